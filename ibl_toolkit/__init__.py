@@ -1,0 +1,1 @@
+"""Mathematics and file formats of Expanded Panoramas: plain Python, no bpy."""
