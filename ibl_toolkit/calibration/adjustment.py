@@ -18,7 +18,8 @@ CONDITION_VARIANCE = 1e-9
 LONGEST_STEP = 0.4  # [rad]; a start value is rarely worse, and the linearisation does not reach further
 STEP_DONE = 1e-11  # [rad]
 CORRECTION_DONE = 1e-7  # of a click's error
-# Contradictory picks converge at the ratio of residual to size of the figure; more steps mean no solution nearby.
+# Contradictory picks converge slowly, by the ratio of their residual to their extent; if this many steps
+# don't do, no orientation is near.
 MOST_STEPS = 100
 
 
@@ -119,12 +120,8 @@ def _linearise(clicks, conditions, rotation, azimuths, corrections):
 
     seen = along @ rotation
     by_click = np.zeros((len(value), len(directions), 2))
-    by_click[rows, conditions.first] += np.einsum(
-        "mi,mij->mj", np.cross(b, seen), clicks.tangents[conditions.first]
-    )
-    by_click[rows, conditions.second] += np.einsum(
-        "mi,mij->mj", np.cross(seen, a), clicks.tangents[conditions.second]
-    )
+    for ends, gradient in ((conditions.first, np.cross(b, seen)), (conditions.second, np.cross(seen, a))):
+        by_click[rows, ends] += np.einsum("mi,mij->mj", gradient, clicks.tangents[ends])
     by_click = by_click.reshape(len(value), -1)
-    scale = 1.0 / np.linalg.norm(by_click, axis=1)
+    scale = 1.0 / np.maximum(np.linalg.norm(by_click, axis=1), 1e-12)
     return value * scale, by_unknown * scale[:, None], by_click * scale[:, None]

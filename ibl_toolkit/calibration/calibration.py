@@ -1,12 +1,11 @@
-"""calibrate(): orientation and scale of a panorama from picks, with figures that say how far to trust them."""
+"""calibrate(): orientation and scale of a panorama from picks, and how far to trust them."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..equirectangular import direction_from_uv
-from .adjustment import Adjustment
-from .clicks import collect_clicks
+from .clicks import CLICK_ERROR_PIXELS, collect_clicks
 from .orientation import final_rotation, orient
 from .picks import CalibrationError
 from .plausibility import LEAST_DEPRESSION_DEG, check_horizon, check_uncertainty, check_up
@@ -23,10 +22,10 @@ class Calibration:
     world_from_panorama (3, 3). camera_height [m]. tilt_deg: angle between the panorama's top and the world's.
     residual_deg: root mean square angle by which the clicks were corrected. uncertainty_*: one standard
     deviation for a click error of half a pixel; tilt: rms angle between the estimated and the true vertical;
-    scale: with a given camera height, the relative error of lengths on the floor (the first side of the first
-    floor rectangle, else the first parallel, else a distance seen 45° down); with a known length, the relative
-    error of the camera height. condition: condition number of the tilt's normal matrix (1 is best: both
-    directions of tilt equally well known). warnings: sentences with figures.
+    scale: with a given camera height, the relative error of lengths on the floor (the first side of the
+    first floor rectangle, else the first parallel, else a distance seen 45° down); with a known length, the
+    relative error of the camera height. condition: condition number of the tilt's normal matrix (1 is best:
+    both directions of tilt equally well known). warnings: sentences with figures.
     """
 
     world_from_panorama: np.ndarray
@@ -54,8 +53,8 @@ class Calibration:
             worst = np.unravel_index(np.argmin(depression_deg), depression_deg.shape)
             u, v = uv[worst]
             raise CalibrationError(
-                f"pick ({u:.4f}, {v:.4f}) lies {depression_deg[worst]:.2f}° below the horizon; on the floor at least "
-                f"{LEAST_DEPRESSION_DEG}° are needed"
+                f"pick ({u:.4f}, {v:.4f}) lies {depression_deg[worst]:.2f}° below the horizon; "
+                f"on the floor at least {LEAST_DEPRESSION_DEG}° are needed"
             )
         return self.camera_height * floor_points(directions, self.world_from_panorama)
 
@@ -90,7 +89,8 @@ def calibrate(picks, image_size):
     >>> corners = [[0.5738, 0.7323], [0.4262, 0.7323], [0.4737, 0.6011], [0.5263, 0.6011]]
     >>> rug = Rectangle(corners, "FLOOR")
     >>> result = calibrate(CalibrationPicks(rectangles=(rug,), camera_height=1.5), (4096, 2048))
-    >>> result.tilt_deg < 0.1, (result.floor_point(corners[1]) - result.floor_point(corners[0])).round(2).tolist()
+    >>> side = result.floor_point(corners[1]) - result.floor_point(corners[0])
+    >>> result.tilt_deg < 0.1, side.round(2).tolist()
     (True, [1.5, 0.0])
     """
     if (picks.camera_height is None) == (picks.length is None):
@@ -98,29 +98,26 @@ def calibrate(picks, image_size):
         raise CalibrationError(f"scale: exactly one of camera_height and length must be given, got {given}")
     clicks = collect_clicks(picks, image_size)
     check_shapes(clicks)
-    conditions, adjustment = orient(clicks)
+    conditions, adjustment, rival = orient(clicks)
     rotation = final_rotation(conditions, adjustment)
     low = check_horizon(clicks, rotation)
     uncertainty = propagate(conditions, adjustment)
     scale_percent = 100.0 * relative_scale_error(clicks, adjustment.world_from_panorama, uncertainty)
-    tilt_sigma_deg = float(np.degrees(uncertainty.tilt))
-    poor = check_uncertainty(
-        tilt_sigma_deg, float(np.degrees(uncertainty.azimuth)), scale_percent, picks.length is not None
-    )
+    poor = check_uncertainty(clicks, rotation, uncertainty, scale_percent)
     height = picks.camera_height
     if height is None:
         height = picks.length.metres / floor_length(clicks, clicks.length, rotation)
-    degrees_per_click_error = float(np.degrees(0.5 * np.pi / image_size[1]))
+    degrees_per_click_error = 180.0 * CLICK_ERROR_PIXELS / image_size[1]
     return Calibration(
         world_from_panorama=_read_only(rotation),
         camera_height=float(height),
         tilt_deg=float(np.degrees(angle_between(rotation[2], np.array([0.0, 0.0, 1.0])))),
-        residual_deg=_residual_deg(clicks, adjustment),
-        uncertainty_tilt_deg=tilt_sigma_deg,
+        residual_deg=_residual_deg(clicks, conditions, adjustment),
+        uncertainty_tilt_deg=float(np.degrees(uncertainty.tilt)),
         uncertainty_scale_percent=scale_percent,
         condition=uncertainty.condition,
         warnings=(
-            *check_up(clicks, conditions, rotation),
+            *check_up(clicks, conditions, rotation, rival),
             *disagreement(clicks, conditions, adjustment, degrees_per_click_error),
             *low,
             *poor,
@@ -128,10 +125,10 @@ def calibrate(picks, image_size):
     )
 
 
-def _residual_deg(clicks, adjustment: Adjustment):
+def _residual_deg(clicks, conditions, adjustment):
     """Root mean square angle between each click that orients and where it should have been."""
     moved = np.einsum("nij,nj->ni", clicks.tangents, adjustment.corrections)
-    used = np.any(adjustment.sensitivity != 0.0, axis=(0, 2))
+    used = np.union1d(conditions.first, conditions.second)
     return float(np.degrees(np.sqrt(np.mean(np.sum(moved[used] ** 2, axis=1)))))
 
 

@@ -9,7 +9,8 @@ from .picks import CalibrationError
 
 CLICK_ERROR_PIXELS = 0.5
 # Half a pixel sideways covers a vanishing angle as a pick nears a pole of the image; taken literally, a click
-# there would outweigh all others. No pick is trusted sideways beyond 1/20 of one at the horizon (3° from a pole).
+# there would outweigh all others. No pick is trusted sideways 20 times more than one at the image's equator,
+# which is so within 3° of a pole.
 SMALLEST_COSINE = 0.05
 
 

@@ -28,10 +28,9 @@ class Conditions:
     turned: np.ndarray
     owner: tuple[str, ...]
     families: int
-    family_of_quad: tuple[int, ...]
 
     def directions(self, azimuths):
-        """World directions (m, 3) of the lines, and their derivative (m, 3) by the azimuth of their family."""
+        """World directions (m, 3) of the lines, and their derivatives (m, 3) by their family's azimuth."""
         angle = np.where(self.turned, np.pi / 2.0, 0.0)
         if self.families:
             angle = angle + np.asarray(azimuths)[np.maximum(self.family, 0)]
@@ -55,17 +54,16 @@ def anchor_quad(clicks):
 
 
 def build_conditions(clicks, upright_pairs):
-    """Conditions of all clicks. upright_pairs: per rectangle, None or for a WALL which pair of sides is vertical.
+    """Conditions of all clicks. upright_pairs: per rectangle None, or for a WALL its vertical pair of sides.
 
     Pair 0 are the sides from click 1 to 2 and from 4 to 3, pair 1 those from 2 to 3 and from 1 to 4.
     """
     anchor = anchor_quad(clicks)
     families = int(anchor is not None or any(line.axis != "Z" for line in clicks.lines))
-    rows, family_of_quad = [], []
+    rows = []
     for number, (quad, upright) in enumerate(zip(clicks.quads, upright_pairs, strict=True)):
         family = 0 if number == anchor else families
         families = max(families, family + 1)
-        family_of_quad.append(family)
         p0, p1, p2, p3 = quad.clicks
         for pair, sides in enumerate([((p0, p1), (p3, p2)), ((p1, p2), (p0, p3))]):
             along = VERTICAL if upright == pair else family
@@ -74,12 +72,5 @@ def build_conditions(clicks, upright_pairs):
     for line in clicks.lines:
         rows.append((*line.clicks, VERTICAL if line.axis == "Z" else 0, line.axis == "Y", line.name))
     first, second, family, turned, owner = zip(*rows, strict=True)
-    return Conditions(
-        np.array(first),
-        np.array(second),
-        np.array(family),
-        np.array(turned),
-        owner,
-        families,
-        tuple(family_of_quad),
-    )
+    columns = (np.array(column) for column in (first, second, family, turned))
+    return Conditions(*columns, owner, families)

@@ -10,28 +10,39 @@ from .start import minimal_rotation, start_values
 # A start that ends in a misfit of no more than this many click errors (1½ pixels) needs no rival. Real clicks
 # err by a pixel or two; a wall whose level sides were taken for the upright ones misfits by tens.
 GOOD_MISFIT = 3.0
+# Verticals that differ by more than this are different answers, not the same one reached twice.
+RIVAL_COSINE = 0.7
 
 
 def orient(clicks):
-    """(Conditions, Adjustment) of the most likely orientation. Raises: CalibrationError if there is none."""
-    best = None
+    """(Conditions, Adjustment, rival) of the most likely orientation.
+
+    rival: True if walls are all there is and fit as well with their level sides standing up.
+    Raises: CalibrationError if no orientation comes near the picks.
+    """
+    walls_only = not clicks.lines and all(quad.plane == "WALL" for quad in clicks.quads)
+    found = []
     for start in start_values(clicks):
         conditions = build_conditions(clicks, start.upright_pairs)
-        if len(conditions.first) < (3 if conditions.families else 2):
-            raise CalibrationError(
-                f"{len(conditions.first)} lines are too few; add a rectangle or two verticals"
-            )
         solution = adjust(clicks, conditions, start.world_from_panorama, start.azimuths)
-        if solution.converged and (best is None or solution.cost < best[1].cost * (1.0 - 1e-6)):
-            best = conditions, solution
-        if best is not None and misfit(best[1]) <= GOOD_MISFIT:
-            break
-    if best is None:
+        if solution.converged:
+            found.append((conditions, solution))
+            if misfit(solution) <= GOOD_MISFIT and not walls_only:
+                break
+    if not found:
         raise CalibrationError(
-            "the picks contradict each other: no orientation comes near all of them; check the planes and axes, "
+            "the picks contradict each other: no orientation comes near all of them; check planes and axes, "
             "and that corners were clicked in order"
         )
-    return best
+    # The first of equals: walls list the sides nearer to the panorama's own vertical first.
+    best = min(found, key=lambda one: max(misfit(one[1]), GOOD_MISFIT))
+    up = best[1].world_from_panorama[2]
+    rival = any(
+        misfit(other) <= max(misfit(best[1]), GOOD_MISFIT)
+        and abs(np.dot(up, other.world_from_panorama[2])) < RIVAL_COSINE
+        for _, other in found
+    )
+    return *best, rival
 
 
 def misfit(adjustment):

@@ -9,7 +9,7 @@ AXES = ("X", "Y")
 
 
 class CalibrationError(ValueError):
-    """Picks from which no trustworthy calibration follows; one line that names the pick and what would be right."""
+    """Picks that give no trustworthy calibration; one line that names the pick and what would be right."""
 
 
 def _picks(points, shape, what):

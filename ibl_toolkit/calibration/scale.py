@@ -21,7 +21,7 @@ def floor_length(clicks, pair, world_from_panorama):
 
 
 def relative_length_error(clicks, pair, world_from_panorama, turn_sensitivity):
-    """One standard deviation of floor_length, relative to it; a click that also oriented the world counts once."""
+    """One standard deviation of floor_length, relative; a click that also oriented counts once."""
     points = floor_points(clicks.directions[list(pair)], world_from_panorama)
     along = (points[1] - points[0]) / np.sum((points[1] - points[0]) ** 2)
     by_click = np.zeros((len(clicks.directions), 2))
@@ -52,8 +52,8 @@ def reference_length(clicks):
 def relative_scale_error(clicks, world_from_panorama, uncertainty):
     """One standard deviation of lengths on the floor, relative; of the camera height if a length was given.
 
-    Without any click on the floor: of the distance to a floor point seen 45° below the horizon, which a tilt δ
-    towards it changes by 2 δ, averaged over all azimuths.
+    Without any click on the floor: of the distance to a floor point seen 45° below the horizon, which a
+    tilt δ towards it changes by 2 δ, averaged over all azimuths.
     """
     pair = reference_length(clicks)
     if pair is None:

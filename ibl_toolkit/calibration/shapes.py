@@ -67,18 +67,18 @@ def _check_bent(clicks, quad):
             flat.append([k + 1 for k in triple])
     if len(flat) >= 3 and quad.plane == "WALL":
         raise CalibrationError(
-            f"{quad.name}: is seen edge-on (its plane runs through the camera); choose a wall seen from the front"
+            f"{quad.name}: is seen edge-on (its plane runs through the camera); choose one in front of it"
         )
     if flat:
         numbers = ", ".join(map(str, flat[0]))
         raise CalibrationError(
-            f"{quad.name}: points {numbers} lie on one line as seen from the camera; it is too thin, too far, "
-            f"or a corner was clicked on a side"
+            f"{quad.name}: points {numbers} lie on one line as seen from the camera; it is too thin, too "
+            f"far away, or a corner was clicked on a side"
         )
 
 
 def _check_convex(clicks, quad):
-    """The four orientations agree for a convex outline seen from anywhere off its plane; a bow-tie has 2 + 2."""
+    """All four turns agree for a convex outline seen from off its plane; for a bow-tie they are 2 and 2."""
     d = clicks.directions[list(quad.clicks)]
     turns = np.sign([np.dot(d[k], np.cross(d[(k + 1) % 4], d[(k + 2) % 4])) for k in range(4)])
     if abs(turns.sum()) == 4.0:
@@ -88,5 +88,5 @@ def _check_convex(clicks, quad):
             f"{quad.name}: its sides cross; click the corners in order around it (either way round)"
         )
     raise CalibrationError(
-        f"{quad.name}: is not convex, so no view of a rectangle; move the corner that points inwards"
+        f"{quad.name}: is not convex, so no view of a rectangle; one corner points inwards"
     )

@@ -7,10 +7,12 @@ import numpy as np
 from .conditions import anchor_quad
 from .picks import CalibrationError
 
+PARALLEL = 1e-6  # cross products of unit vectors below this say nothing about the vertical
+
 
 @dataclass(frozen=True)
 class Start:
-    """world_from_panorama (3, 3), azimuths of the rectangles (families,), and per rectangle its upright pair."""
+    """world_from_panorama (3, 3), azimuths (families,), and each rectangle's upright pair or None."""
 
     world_from_panorama: np.ndarray
     azimuths: np.ndarray
@@ -39,7 +41,7 @@ def side_directions(corners):
 
 
 def vanishing_direction(normals):
-    """The unit direction (3,) nearest to all planes with the given normals (k, 3), k ≥ 2; its sign is free."""
+    """The unit direction (3,) nearest to all planes of normals (k, 3), k ≥ 2; its sign is free."""
     return np.linalg.eigh(normals.T @ normals)[1][:, 0]
 
 
@@ -48,13 +50,11 @@ def start_values(clicks):
 
     Raises: CalibrationError if the picks leave the vertical undetermined, saying what would add it.
     """
-    up_votes = clicks.directions[clicks.ceiling_clicks()].sum(0) - clicks.directions[
-        clicks.floor_clicks()
-    ].sum(0)
-    candidates = list(_vertical_candidates(clicks))
+    floor, ceiling = (clicks.directions[k].sum(0) for k in (clicks.floor_clicks(), clicks.ceiling_clicks()))
+    candidates = [_unit(up) for up in _vertical_candidates(clicks) if np.linalg.norm(up) > PARALLEL]
     if not candidates:
         raise CalibrationError(_missing(clicks))
-    return [_complete(clicks, up * _sign(up, up_votes)) for up in candidates]
+    return [_complete(clicks, up * _sign(up, ceiling - floor)) for up in candidates]
 
 
 def _sign(up, up_votes):
@@ -70,7 +70,7 @@ def _vertical_candidates(clicks):
         if quad.plane == "WALL":
             walls.append(sides[np.argsort(-np.abs(sides[:, 2]), kind="stable")])
         else:
-            yield _unit(np.cross(*sides))
+            yield np.cross(*sides)
     normals = {axis: _line_normals(clicks, axis) for axis in "XYZ"}
     if len(normals["Z"]) >= 2:
         yield vanishing_direction(normals["Z"])
@@ -92,9 +92,9 @@ def _from_parallels(normals):
                 across = vanishing_direction(normals[other])
             else:
                 across = np.cross(along, normals[other][0])
-            yield _unit(np.cross(along, across))
+            yield np.cross(along, across)
         elif len(normals["Z"]):
-            yield _unit(np.cross(along, normals["Z"][0]))
+            yield np.cross(along, normals["Z"][0])
 
 
 def _line_normals(clicks, axis):
@@ -115,8 +115,8 @@ def _missing(clicks):
         )
     if count["X"] or count["Y"]:
         return (
-            f"{count['X']} parallels along X, {count['Y']} along Y and {count['Z']} verticals leave the tilt open; "
-            f"add two lines along the other axis, or verticals, or a rectangle"
+            f"{count['X']} parallels along X, {count['Y']} along Y and {count['Z']} verticals leave the tilt "
+            f"open; add two lines along the other axis, or verticals, or a rectangle"
         )
     return "no picks: orientation needs a rectangle, parallels along X and Y, or two verticals"
 

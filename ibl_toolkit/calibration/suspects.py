@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from .clicks import CLICK_ERROR_PIXELS
 from .orientation import misfit
 
 # Estimated click error from which picks count as contradictory, in half pixels: careful clicks err by one or
@@ -14,15 +15,16 @@ CLEARLY_WORSE = 2.0
 def disagreement(clicks, conditions, adjustment, degrees_per_click_error):
     """Warnings (tuple of str) about picks that don't fit together; empty if they do.
 
-    A suspect is taken out by dropping its conditions C: the cost falls by k_C' Q_CC⁻¹ k_C (k multipliers, Q
-    their cofactors), its squared studentised residual. The smallest suspect that makes the rest agree is named.
+    A suspect is taken out by dropping its conditions C: the cost falls by k_C' Q_CC⁻¹ k_C (k multipliers,
+    Q their cofactors), its squared studentised residual. The smallest suspect that makes the rest agree is
+    named.
     """
     estimated = misfit(adjustment)
     if estimated <= CONTRADICTORY_MISFIT:
         return ()
     text = (
-        f"the picks disagree: they fit as if clicked with an error of {estimated * degrees_per_click_error:.2f}° "
-        f"({estimated / 2.0:.1f} pixels)"
+        f"the picks disagree: they fit as if clicked with an error of "
+        f"{estimated * degrees_per_click_error:.2f}° ({estimated * CLICK_ERROR_PIXELS:.1f} pixels)"
     )
     named = _explanation(clicks, conditions, adjustment)
     if not named:
@@ -63,7 +65,7 @@ def _misfit_without(adjustment, rows):
 
 
 def _suspects(clicks, conditions):
-    """Names and the conditions that fall away with them: corners, lines, whole rectangles, all lines of an axis."""
+    """Names and the conditions that fall with them: corners, lines, rectangles, all lines of an axis."""
     suspects = {}
     for quad in clicks.quads:
         for number, click in enumerate(quad.clicks, start=1):

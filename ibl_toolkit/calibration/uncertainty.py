@@ -12,9 +12,9 @@ class Uncertainty:
     """One standard deviation for a click error of half a pixel.
 
     tilt [rad]: root mean square angle between the estimated and the true vertical (both directions of error
-    together). azimuth [rad] of the world's +x, 0 where nothing determines it. condition: condition number of the
-    tilt's normal matrix (2 × 2, all azimuths eliminated), i.e. the squared ratio of the worst to the best
-    determined direction of tilt. turn_sensitivity (3, n, 2): turns of the world per error of each click.
+    together). azimuth [rad] of the world's +x, 0 where nothing determines it. condition: condition number of
+    the tilt's normal matrix (2 × 2, all azimuths eliminated), i.e. the squared ratio of the errors of tilt in
+    its worst and its best direction. turn_sensitivity (3, n, 2): turns of the world per error of each click.
     """
 
     tilt: float
