@@ -1,0 +1,30 @@
+"""Files that are whole or absent: written beside their target, then renamed over it."""
+
+import os
+import secrets
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path):
+    """A temporary path beside `path`, with its suffix, that becomes `path` when the block succeeds.
+
+    If the block fails or is interrupted (KeyboardInterrupt included), what it wrote is deleted and the
+    old file, if any, stays.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with replacing(Path(folder) / "a.txt") as temporary:
+    ...         _ = temporary.write_text("whole")
+    ...     (Path(folder) / "a.txt").read_text()
+    'whole'
+    """
+    path = Path(path)
+    # Hidden and random: two runs with the same target don't write into each other's file.
+    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part{path.suffix}")
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
