@@ -6,11 +6,12 @@ import numpy as np
 
 from ..equirectangular import direction_from_uv
 from .clicks import CLICK_ERROR_PIXELS, collect_clicks
+from .directions import angle_between
 from .orientation import final_rotation, orient
 from .picks import CalibrationError
-from .plausibility import LEAST_DEPRESSION_DEG, check_horizon, check_uncertainty, check_up
+from .plausibility import LEAST_DEPRESSION_DEG, check_evidence, check_horizon, check_uncertainty
 from .scale import floor_length, floor_points, relative_scale_error
-from .shapes import angle_between, check_shapes
+from .shapes import check_shapes
 from .suspects import disagreement
 from .uncertainty import propagate
 
@@ -117,7 +118,7 @@ def calibrate(picks, image_size):
         uncertainty_scale_percent=scale_percent,
         condition=uncertainty.condition,
         warnings=(
-            *check_up(clicks, conditions, rotation, rival),
+            *check_evidence(clicks, conditions, rotation, adjustment.redundancy, rival),
             *disagreement(clicks, conditions, adjustment, degrees_per_click_error),
             *low,
             *poor,

@@ -2,9 +2,8 @@
 
 import numpy as np
 
+from .directions import angle_between, side_directions
 from .picks import CalibrationError
-from .shapes import angle_between
-from .start import side_directions
 
 # A floor point half a degree below the horizon is 115 camera heights away: half a pixel of a 4k image moves
 # it by a tenth of that.
@@ -38,8 +37,8 @@ def check_horizon(clicks, world_from_panorama):
         return ()
     worst = min(low, key=lambda k: abs(elevation[k]))
     return (
-        f"{clicks.names[worst]}: lies only {abs(elevation[worst]):.1f}° from the horizon, where distances are "
-        f"uncertain; prefer nearer picks",
+        f"{clicks.names[worst]}: lies only {abs(elevation[worst]):.1f}° from the horizon, where distances "
+        f"are uncertain; prefer nearer picks",
     )
 
 
@@ -47,8 +46,8 @@ def _check_side(clicks, indices, beyond_deg, what, right, wrong):
     for k in indices:
         if beyond_deg[k] < 0.0:
             raise CalibrationError(
-                f"{clicks.names[k]}: lies {-beyond_deg[k]:.2f}° {wrong} the horizon; picks on the {what} must "
-                f"lie {right} it"
+                f"{clicks.names[k]}: lies {-beyond_deg[k]:.2f}° {wrong} the horizon; picks on the {what} "
+                f"must lie {right} it"
             )
         if beyond_deg[k] < LEAST_DEPRESSION_DEG:
             raise CalibrationError(
@@ -95,8 +94,8 @@ def _cause(clicks, world_from_panorama):
     elevation = elevations_deg(clicks, world_from_panorama)[list(quad.clicks)].mean()
     place = f"{abs(elevation):.0f}° {'below' if elevation < 0 else 'above'} the horizon"
     return (
-        f"{quad.name} spans {spans[largest]:.1f}°, {place}; take a larger one, nearer to 45° from the horizon, "
-        f"or add lines in other directions"
+        f"{quad.name} spans {spans[largest]:.1f}°, {place}; take a larger one, nearer to 45° from the "
+        f"horizon, or add lines in other directions"
     )
 
 
@@ -106,8 +105,8 @@ def _span_deg(clicks, quad):
     return float(np.degrees(min(angle_between(a, c), angle_between(b, d))))
 
 
-def check_up(clicks, conditions, world_from_panorama, rival):
-    """Warnings (list of str) about what picks could not say: which way is up, the azimuth, a wall's sides."""
+def check_evidence(clicks, conditions, world_from_panorama, redundancy, rival):
+    """Warnings (list of str) about what the picks could not say: up, azimuth, a wall's sides, a check."""
     warnings = []
     tilt_deg = np.degrees(np.arccos(np.clip(world_from_panorama[2, 2], -1.0, 1.0)))
     if not (clicks.floor_clicks() or clicks.ceiling_clicks()):
@@ -117,6 +116,10 @@ def check_up(clicks, conditions, world_from_panorama, rival):
             f"the panorama is upside down (tilt {tilt_deg:.1f}°); if it is not, picks on the ceiling were "
             f"called floor or the other way round"
         )
+    if redundancy == 0:
+        warnings.append(
+            "no pick is redundant, so a misplaced one would go unnoticed; add a line or a rectangle"
+        )
     if not conditions.families:
         warnings.append(
             "nothing gives an azimuth: +x stays near the panorama's; add a rectangle or parallels"
@@ -125,7 +128,7 @@ def check_up(clicks, conditions, world_from_panorama, rival):
         sides = side_directions(clicks.directions[list(clicks.quads[0].clicks)])
         lean_deg = np.sort(np.degrees(np.arccos(np.minimum(np.abs(sides[:, 2]), 1.0))))
         warnings.append(
-            f"{clicks.quads[0].name}: either pair of its sides could be upright; taken was the one that leans "
-            f"{lean_deg[0]:.0f}° against the panorama's own vertical (the other: {lean_deg[1]:.0f}°)"
+            f"{clicks.quads[0].name}: either pair of its sides could be upright; taken was the one that "
+            f"leans {lean_deg[0]:.0f}° against the panorama's own vertical (the other: {lean_deg[1]:.0f}°)"
         )
     return warnings

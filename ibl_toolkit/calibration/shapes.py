@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 
+from .directions import angle_between, corner_volumes
 from .picks import CalibrationError
 
 # Two clicks closer than twice their own error (2 · ½ pixel) can't be told from one click.
@@ -20,18 +21,14 @@ def check_shapes(clicks):
     """
     for quad in clicks.quads:
         _check_distinct(clicks, quad.clicks, quad.name)
-        _check_bent(clicks, quad)
-        _check_convex(clicks, quad)
+        volumes = corner_volumes(clicks.directions[list(quad.clicks)])
+        _check_bent(clicks, quad, volumes)
+        _check_convex(quad, volumes)
     for line in clicks.lines:
         _check_distinct(clicks, line.clicks, line.name)
         _check_not_opposite(clicks, line.clicks, line.name)
     if clicks.length is not None:
         _check_distinct(clicks, clicks.length, "length")
-
-
-def angle_between(a, b):
-    """The angle between two vectors [rad], accurate for tiny angles and near π."""
-    return np.arctan2(np.linalg.norm(np.cross(a, b)), np.dot(a, b))
 
 
 def _click_error(clicks, index):
@@ -56,37 +53,34 @@ def _check_not_opposite(clicks, indices, name):
         raise CalibrationError(f"{name}: its two points are opposite each other, so no line is defined")
 
 
-def _check_bent(clicks, quad):
+def _check_bent(clicks, quad, volumes):
     """Every corner must stand off the great circle through any two others."""
+    d = clicks.directions[list(quad.clicks)]
     flat = []
-    for triple in combinations(range(4), 3):
-        a, b, c = (clicks.directions[quad.clicks[k]] for k in triple)
-        volume = abs(np.dot(a, np.cross(b, c)))
-        longest = max(np.linalg.norm(np.cross(*pair)) for pair in ((a, b), (b, c), (c, a)))
+    for left_out, volume in enumerate(np.abs(volumes)):
+        triple = [k for k in range(4) if k != left_out]
+        longest = max(np.sin(angle_between(d[m], d[n])) for m, n in combinations(triple, 2))
         if volume < COLLINEAR_CLICK_ERRORS * _click_error(clicks, quad.clicks[0]) * longest:
             flat.append([k + 1 for k in triple])
     if len(flat) >= 3 and quad.plane == "WALL":
         raise CalibrationError(
-            f"{quad.name}: is seen edge-on (its plane runs through the camera); choose one in front of it"
+            f"{quad.name}: is seen edge-on (its plane runs through the camera); look for another wall"
         )
     if flat:
-        numbers = ", ".join(map(str, flat[0]))
+        numbers = ", ".join(map(str, flat[-1]))
         raise CalibrationError(
             f"{quad.name}: points {numbers} lie on one line as seen from the camera; it is too thin, too "
             f"far away, or a corner was clicked on a side"
         )
 
 
-def _check_convex(clicks, quad):
-    """All four turns agree for a convex outline seen from off its plane; for a bow-tie they are 2 and 2."""
-    d = clicks.directions[list(quad.clicks)]
-    turns = np.sign([np.dot(d[k], np.cross(d[(k + 1) % 4], d[(k + 2) % 4])) for k in range(4)])
-    if abs(turns.sum()) == 4.0:
-        return
-    if turns.sum() == 0.0:
+def _check_convex(quad, volumes):
+    turns = abs(np.sign(volumes).sum())
+    if turns == 0.0:
         raise CalibrationError(
             f"{quad.name}: its sides cross; click the corners in order around it (either way round)"
         )
-    raise CalibrationError(
-        f"{quad.name}: is not convex, so no view of a rectangle; one corner points inwards"
-    )
+    if turns != 4.0:
+        raise CalibrationError(
+            f"{quad.name}: is not convex, so no view of a rectangle; one corner points inwards"
+        )
