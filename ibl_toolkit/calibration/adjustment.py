@@ -74,7 +74,7 @@ def adjust(clicks, conditions, world_from_panorama, azimuths):
     converged = False
     for _ in range(MOST_STEPS):
         value, by_unknown, by_click = _linearise(clicks, conditions, rotation, azimuths, corrections)
-        weight = np.linalg.inv(by_click @ by_click.T + CONDITION_VARIANCE * np.eye(len(value)))
+        weight = invert_symmetric(by_click @ by_click.T + CONDITION_VARIANCE * np.eye(len(value)))
         normal = by_unknown.T @ weight @ by_unknown
         misfit = by_click @ corrections.ravel() - value
         step = np.linalg.lstsq(normal, by_unknown.T @ weight @ misfit, rcond=1e-14)[0]
@@ -87,16 +87,16 @@ def adjust(clicks, conditions, world_from_panorama, azimuths):
         if np.abs(step).max() < STEP_DONE and moved < CORRECTION_DONE:
             converged = True
             break
-    inverse = invert_normal(normal)
+    inverse = invert_symmetric(normal)
     gain = weight @ by_unknown @ inverse
     sensitivity = -(gain.T @ by_click).reshape(len(normal), -1, 2)
     cofactors = weight - gain @ by_unknown.T @ weight
     return Adjustment(rotation, azimuths, corrections, multipliers, cofactors, normal, sensitivity, converged)
 
 
-def invert_normal(normal):
-    """Inverse of a normal matrix; what nothing determines gets a huge variance instead of an exception."""
-    values, vectors = np.linalg.eigh(normal)
+def invert_symmetric(matrix):
+    """Inverse of a positive matrix (n, n); what nothing determines gets a huge variance, no exception."""
+    values, vectors = np.linalg.eigh(matrix)
     floor = max(values.max(), 1.0) * 1e-15
     return (vectors / np.maximum(values, floor)) @ vectors.T
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .adjustment import invert_normal
+from .adjustment import invert_symmetric
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ def propagate(conditions, adjustment):
     An error ε of the clicks moves the unknowns by −N⁻¹ A' M⁻¹ B ε, M = B B', N = A' M⁻¹ A, so their
     covariance is N⁻¹.
     """
-    covariance = invert_normal(adjustment.normal)
+    covariance = invert_symmetric(adjustment.normal)
     variances = np.linalg.eigvalsh(covariance[:2, :2])
     turns = 3 if conditions.families else 2
     sensitivity = np.zeros((3, *adjustment.sensitivity.shape[1:]))

@@ -176,9 +176,9 @@ def test_a_length_above_or_at_the_horizon():
 
 def test_a_floor_pick_in_the_sky_is_no_floor_point():
     result = calibrate(CalibrationPicks((Rectangle(seen(RUG)),), camera_height=CAMERA_HEIGHT), SIZE)
-    with pytest.raises(CalibrationError, match="lies -.*° below the horizon"):
+    with pytest.raises(CalibrationError, match=r"lies -.*° below the horizon"):
         result.floor_point(seen([[2.0, 0.0, 0.0], [2.0, 0.0, 3.0]]))
-    with pytest.raises(CalibrationError, match="lies 0.29° below the horizon"):
+    with pytest.raises(CalibrationError, match=r"lies 0\.29° below the horizon"):
         result.floor_point(seen([300.0, 0.0, 0.0]))
 
 
