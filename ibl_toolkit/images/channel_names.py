@@ -5,7 +5,7 @@ from .exr_header import UINT
 
 _COLOUR = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 _LUMINANCE = ("y", "l", "luminance")
-_CHROMA = ("ry", "by")
+_NOT_LUMINANCE_BESIDE = {"ry", "by", "x"}  # chroma coded apart, or Y as a coordinate
 # What renderers call the layer that is the picture, where they name it.
 _PICTURE_LAYERS = ("combined", "beauty", "rgb", "rgba", "color", "colour", "default")
 
@@ -61,8 +61,8 @@ def _colour(channels):
     colour = {_COLOUR[last]: name for last, name in channels.items() if last in _COLOUR}
     if len(colour) == 3:
         return tuple(colour[k] for k in range(3))
-    if colour or any(chroma in channels for chroma in _CHROMA):
-        return ()  # part of the colour is missing, or coded apart: its luminance alone is not the picture
+    if colour or _NOT_LUMINANCE_BESIDE & channels.keys():
+        return ()
     return tuple(channels[name] for name in _LUMINANCE if name in channels)[:1]
 
 

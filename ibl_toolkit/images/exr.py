@@ -56,7 +56,7 @@ def decode(path, parts, index, names):
     with contextlib.redirect_stdout(io.StringIO()) as complaints:  # the library prints what it can't decode
         try:
             file = OpenEXR.File(str(path), separate_channels=not interleaved)
-        except RuntimeError as error:
+        except (RuntimeError, ValueError) as error:  # ValueError: text that is not UTF-8, unknown types
             raise ImageError(f"{path}: cannot be decoded: {error}") from error
     if len(file.parts) != len(parts):
         raise ImageError(f"{path}: cannot be decoded: {' '.join(complaints.getvalue().split())}")

@@ -19,6 +19,7 @@ MAGIC = b"\x76\x2f\x31\x01"
 _TILED, _MULTIPART = 0x200, 0x1000
 UINT, HALF, FLOAT = 0, 1, 2
 _PIXEL_BYTES = {UINT: 4, HALF: 2, FLOAT: 4}
+_FLAT, _DEEP = (b"scanlineimage", b"tiledimage"), (b"deepscanline", b"deeptile")
 # Rows per chunk of the compressions 0 to 9: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
 _CHUNK_ROWS = (1, 1, 1, 16, 32, 16, 32, 32, 32, 256)
 _LONGEST_NAME = 256
@@ -35,14 +36,14 @@ class ExrChannel:
 
 @dataclass(frozen=True)
 class ExrPart:
-    """One part; windows are (left, top, right, bottom) in pixels, both ends included."""
+    """One part; windows are (left, top, right, bottom) [px], both ends included; no tile_size: scanlines."""
 
     channels: tuple[ExrChannel, ...]
     data_window: tuple[int, int, int, int]
     display_window: tuple[int, int, int, int]
     attributes: dict[str, tuple[str, bytes]]
-    tiled: bool
     deep: bool
+    tile_size: tuple[int, int] | None
 
     @property
     def pixel_count(self):
@@ -51,8 +52,9 @@ class ExrPart:
 
     @property
     def decoded_bytes(self):
-        """Bytes of all channels once decoded."""
-        return self.pixel_count * sum(_PIXEL_BYTES[c.pixel_type] for c in self.channels)
+        """Bytes of all channels once decoded, or of one tile if that is larger: the decoder holds both."""
+        tile_pixels = self.tile_size[0] * self.tile_size[1] if self.tile_size else 0
+        return max(self.pixel_count, tile_pixels) * sum(_PIXEL_BYTES[c.pixel_type] for c in self.channels)
 
 
 def window_width(window):
@@ -95,6 +97,10 @@ def refuse_truncated(path):
             # A zero offset is what a writer leaves that died before it came back to fill in the table.
             if table.min() < end:
                 raise ImageError(f"{path}: the file was not finished: a chunk's offset is {int(table.min())}")
+            if table.max() >= length:
+                raise ImageError(
+                    f"{path}: truncated: {length} bytes, but a chunk starts at {int(table.max())}"
+                )
             end_of_last = _chunk_end(file, path, int(table.max()), part, multipart)
             if end_of_last > length:
                 raise ImageError(f"{path}: truncated: {length} bytes, must be {end_of_last} or more")
@@ -128,11 +134,11 @@ def _read_attributes(file, path):
 
 
 def _read_name(file, path):
-    name = bytearray()
-    while (byte := _read_exactly(file, 1, path)) != b"\0":
-        name += byte
-        if len(name) > _LONGEST_NAME:
-            raise ImageError(f"{path}: damaged header: a name of more than {_LONGEST_NAME} characters")
+    start = file.tell()
+    name, end, _ = file.read(_LONGEST_NAME + 1).partition(b"\0")
+    if not end:
+        raise ImageError(f"{path}: truncated or damaged within its header, in a name at byte {start}")
+    file.seek(start + len(name) + 1)
     return name.decode("utf-8", "replace")
 
 
@@ -147,11 +153,27 @@ def _part(attributes, tiled, path):
     for name in ("channels", "dataWindow", "displayWindow", "compression"):
         if name not in attributes:
             raise ImageError(f"{path}: damaged header: it has no {name}")
+    if len(attributes["compression"][1]) != 1 or len(attributes.get("chunkCount", ("", bytes(4)))[1]) != 4:
+        raise ImageError(f"{path}: damaged header: its compression or its count of chunks has a wrong size")
     kind = attributes.get("type", ("", b""))[1].rstrip(b"\0")
     windows = [_window(attributes[name][1], name, path) for name in ("dataWindow", "displayWindow")]
-    tiled = (kind == b"tiledimage") if kind else tiled
+    if kind not in (b"", *_FLAT, *_DEEP):
+        raise ImageError(f"{path}: damaged header: type {kind!r}, must be one of {(*_FLAT, *_DEEP)}")
+    tiled = kind == b"tiledimage" if kind else tiled
     channels = tuple(_channels(attributes["channels"][1], path))
-    return ExrPart(channels, *windows, attributes, tiled, kind.startswith(b"deep"))
+    return ExrPart(
+        channels, *windows, attributes, kind in _DEEP, _tile_size(attributes, path) if tiled else None
+    )
+
+
+def _tile_size(attributes, path):
+    value = attributes.get("tiles", ("", b""))[1]
+    if len(value) != 9:
+        raise ImageError(f"{path}: damaged header: tiled, but without a description of its tiles")
+    width, height, _ = struct.unpack("<2IB", value)
+    if width < 1 or height < 1:
+        raise ImageError(f"{path}: damaged header: tiles of {width} x {height} px")
+    return width, height
 
 
 def _window(value, name, path):
@@ -179,30 +201,25 @@ def _channels(value, path):
 
 
 def _read_chunk_table(file, path, part):
-    count = _chunk_count(part, path)
+    count = _chunk_count(part)
     return np.frombuffer(_read_exactly(file, 8 * count, path), dtype="<u8")
 
 
-def _chunk_count(part, path):
+def _chunk_count(part):
     if "chunkCount" in part.attributes:
         return max(0, struct.unpack("<i", part.attributes["chunkCount"][1])[0])
     width, height = window_width(part.data_window), window_height(part.data_window)
-    if not part.tiled:
+    if not part.tile_size:
         compression = part.attributes["compression"][1][0]
         # Of a compression newer than this list, leave the check to the library.
         return -(-height // _CHUNK_ROWS[compression]) if compression < len(_CHUNK_ROWS) else 0
-    if "tiles" not in part.attributes or len(part.attributes["tiles"][1]) != 9:
-        raise ImageError(f"{path}: damaged header: tiled, but without a description of its tiles")
-    tile_width, tile_height, _ = struct.unpack("<2IB", part.attributes["tiles"][1])
-    if tile_width < 1 or tile_height < 1:
-        raise ImageError(f"{path}: damaged header: tiles of {tile_width} x {tile_height} px")
-    # The finest level's tiles come first; coarser ones (mode > 0) are not read.
-    return -(-width // tile_width) * -(-height // tile_height)
+    # The finest level's tiles come first; coarser ones are not read.
+    return -(-width // part.tile_size[0]) * -(-height // part.tile_size[1])
 
 
 def _chunk_end(file, path, offset, part, multipart):
     # part number (multipart only), then y, or tile x, y and levels; then the size of what follows
-    leader = 4 * (multipart + (4 if part.tiled else 1))
+    leader = 4 * (multipart + (4 if part.tile_size else 1))
     file.seek(offset + leader)
     size = file.read(4)
     if len(size) < 4:

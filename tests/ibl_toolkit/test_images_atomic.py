@@ -1,0 +1,49 @@
+"""A target is the old file or the new one, and nothing lies beside it."""
+
+import pytest
+
+from expanded_panoramas.ibl_toolkit.images import replacing
+
+
+@pytest.fixture
+def target(tmp_path):
+    path = tmp_path / "target.exr"
+    path.write_text("old")
+    return path
+
+
+def test_success_replaces(target):
+    with replacing(target) as temporary:
+        assert temporary.parent == target.parent
+        assert temporary.suffix == target.suffix
+        temporary.write_text("new")
+        assert target.read_text() == "old"
+    assert target.read_text() == "new"
+    assert list(target.parent.iterdir()) == [target]
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt])
+def test_failure_leaves_the_old_file(target, error):
+    def write_half():
+        with replacing(target) as temporary:
+            temporary.write_text("half")
+            raise error
+
+    with pytest.raises(error):
+        write_half()
+    assert target.read_text() == "old"
+    assert list(target.parent.iterdir()) == [target]
+
+
+def test_a_block_that_writes_nothing_is_an_error(target):
+    with pytest.raises(FileNotFoundError), replacing(target):
+        pass
+    assert target.read_text() == "old"
+
+
+def test_two_writers_do_not_meet(target):
+    with replacing(target) as first, replacing(target) as second:
+        assert first != second
+        first.write_text("first")
+        second.write_text("second")
+    assert target.read_text() == "first"
