@@ -1,9 +1,18 @@
-"""Turns results into Blender data and pictures: roles, materials, lights, bakes, renders."""
+"""Turns results into Blender data and pictures: roles, materials, lights, maps, render set-up,
+compositing."""
+
+from . import place, roles
+
+MODULES = (roles, place)
 
 
 def register():
-    """Nothing to register yet."""
+    """Register roles and places."""
+    for module in MODULES:
+        module.register()
 
 
 def unregister():
-    """Nothing to take back yet."""
+    """Take them back."""
+    for module in reversed(MODULES):
+        module.unregister()

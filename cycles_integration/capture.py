@@ -1,0 +1,88 @@
+"""Pictures that the program takes for itself: renders of the place in a scene of their own.
+
+The artist's scene is left alone: a temporary scene links the place's surfaces and lights, renders one
+multilayer EXR, and is removed with all that it made.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import tempfile
+from pathlib import Path
+
+import bpy
+import numpy as np
+import OpenEXR
+from mathutils import Euler
+
+from .place import Place
+
+EQUIRECTANGULAR_FROM_CAMERA = Euler((math.pi / 2, 0, -math.pi / 2)).to_matrix().to_4x4()
+"""Blender's panoramic camera looks along its −z with +y up; so turned it looks along +x with +z up."""
+NAMES_BEFORE_5 = {"IndexOB": "Object Index"}
+"""Passes whose name changed in Blender 5.0."""
+POINT_FILTER = 0.01
+"""A pixel filter this narrow [px] puts every sample on the pixel's centre."""
+
+
+@contextlib.contextmanager
+def temporary_scene(place: Place, width: int, samples: int):
+    """A Cycles scene of the place's surfaces and lights, seen by a panoramic camera at its origin.
+
+    Its image is width × width/2 and lies in the panorama's own frame, like the photograph. Background, film,
+    filter and passes are the caller's to set.
+    """
+    scene = bpy.data.scenes.new("Panorama Capture")
+    camera = panorama_camera(place)
+    try:
+        for collection in (place.surfaces, place.lights):
+            scene.collection.children.link(collection)
+        scene.collection.objects.link(camera)
+        scene.camera = camera
+        render = scene.render
+        render.engine = "CYCLES"
+        render.resolution_x, render.resolution_y, render.resolution_percentage = width, width // 2, 100
+        render.use_compositing = render.use_sequencer = False
+        scene.cycles.samples = samples
+        scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
+        scene.cycles.sample_clamp_indirect = 0
+        yield scene
+    finally:
+        data = camera.data
+        bpy.data.scenes.remove(scene)
+        bpy.data.cameras.remove(data)
+
+
+def panorama_camera(place: Place) -> bpy.types.Object:
+    """A new equirectangular camera at the place's origin, whose image lies in the panorama's frame."""
+    data = bpy.data.cameras.new("Panorama Camera")
+    data.type = "PANO"
+    panoramic = data if hasattr(data, "panorama_type") else data.cycles  # moved to the camera in Blender 5.0
+    panoramic.panorama_type = "EQUIRECTANGULAR"
+    data.clip_start, data.clip_end = 1e-3, 1e6
+    camera = bpy.data.objects.new(data.name, data)
+    camera.matrix_world = place.origin.matrix_world @ EQUIRECTANGULAR_FROM_CAMERA
+    return camera
+
+
+def sample_pixel_centres(scene: bpy.types.Scene):
+    """Make every pixel show its centre alone, as the photograph's pixels are looked up."""
+    scene.cycles.pixel_filter_type = "BLACKMAN_HARRIS"
+    scene.cycles.filter_width = POINT_FILTER
+
+
+def render_passes(scene: bpy.types.Scene) -> dict[str, np.ndarray]:
+    """Render and return the view layer's passes by name: (H, W) or (H, W, C) float32, top row first."""
+    with tempfile.TemporaryDirectory() as folder:
+        settings = scene.render.image_settings
+        if hasattr(settings, "media_type"):  # Blender 5.0
+            settings.media_type = "MULTI_LAYER_IMAGE"
+        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+        settings.exr_codec = "NONE"
+        scene.render.filepath = str(Path(folder) / "capture.exr")
+        bpy.ops.render.render(write_still=True, scene=scene.name)
+        parts = OpenEXR.File(scene.render.filepath).parts  # one part per pass from Blender 5.0
+        channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
+    passes = {name.split(".")[1]: pixels for name, pixels in channels.items()}
+    return {NAMES_BEFORE_5.get(name, name): pixels for name, pixels in passes.items()}

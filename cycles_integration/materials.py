@@ -1,0 +1,135 @@
+"""Materials of the real surfaces: environment, support, and those that only one render pass uses."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import lookup, roles
+from .lookup import DIFFUSE_LIGHT, GLOSS, IRRADIANCE, PHOTOGRAPH
+from .node_trees import add, vector_maths
+from .place import Place
+
+MOST_ALBEDO = 0.9
+"""A real surface reflects no more; what the photograph shows beyond that is taken as its own light."""
+LEAST_IRRADIANCE = 1e-4
+
+
+def environment_material() -> bpy.types.Material:
+    """Emit the photograph; to paths after a diffuse bounce, what the extracted lights leave of it (eq.
+    5.8)."""
+    material = _emptied("Panorama Environment")
+    _surface(material, _emission(material.node_tree, lookup.lookup(material.node_tree, DIFFUSE_LIGHT)))
+    return material
+
+
+def support_material() -> bpy.types.Material:
+    """Reflect light with the effective albedo, so that undisturbed it shows exactly the photograph.
+
+    With E the irradiance that the place throws on the point and S the reflection that the panorama saw there,
+    A = (M − S)·π/E is the albedo that makes the lit surface show M; darker where light is blocked, brighter
+    where it bounces. It replaces the factor ES of eq. 5.11, whose light has neither distance nor emitter
+    cosine.
+    """
+    material = _emptied("Panorama Support")
+    tree = material.node_tree
+    photograph, irradiance = lookup.lookup(tree, PHOTOGRAPH), lookup.lookup(tree, IRRADIANCE)
+    diffuse_part = vector_maths(tree, "SUBTRACT", photograph, lookup.lookup(tree, GLOSS))
+    floor = vector_maths(tree, "MAXIMUM", irradiance, (LEAST_IRRADIANCE,) * 3)
+    albedo = vector_maths(tree, "DIVIDE", diffuse_part, floor)
+    albedo = vector_maths(
+        tree, "MINIMUM", vector_maths(tree, "MAXIMUM", albedo, (0, 0, 0)), (MOST_ALBEDO,) * 3
+    )
+    own_light = vector_maths(
+        tree, "SUBTRACT", diffuse_part, vector_maths(tree, "MULTIPLY", albedo, irradiance)
+    )
+    own_light = vector_maths(tree, "MAXIMUM", own_light, (0, 0, 0))
+    diffuse = add(tree, "ShaderNodeBsdfDiffuse", {"Color": albedo}).outputs[0]
+    lit = _sum(tree, diffuse, _emission(tree, own_light))
+    _surface(material, _sum(tree, lit, _reflection(tree)))
+    return material
+
+
+def backplate_material() -> bpy.types.Material:
+    """Show the photograph, projected on the rebuilt surfaces, to the camera."""
+    material = _emptied("Panorama Backplate")
+    _surface(material, _emission(material.node_tree, lookup.lookup(material.node_tree, PHOTOGRAPH)))
+    return material
+
+
+def black_material() -> bpy.types.Material:
+    """Neither emit nor reflect: for passes of geometry."""
+    material = _emptied("Panorama Geometry")
+    _surface(material, _emission(material.node_tree, (0, 0, 0)))
+    return material
+
+
+def irradiance_material() -> bpy.types.Material:
+    """White and diffuse where the camera looks, the place's light everywhere else: the camera then sees
+    E/π."""
+    return _probe(
+        "Panorama Irradiance",
+        lambda tree: add(tree, "ShaderNodeBsdfDiffuse", {"Color": (1, 1, 1, 1)}).outputs[0],
+    )
+
+
+def gloss_material() -> bpy.types.Material:
+    """A support's reflection alone where the camera looks, the place's light everywhere else."""
+    return _probe("Panorama Gloss", _reflection)
+
+
+def assign(scene: bpy.types.Scene, place: Place):
+    """Give every real object the material of its role.
+
+    Where lights were extracted, Cycles aims at these and not at the surfaces, whose light is dim and
+    everywhere.
+    """
+    by_role = {roles.SUPPORT: support_material(), roles.ENVIRONMENT: environment_material()}
+    for material in by_role.values():
+        material.cycles.emission_sampling = "NONE" if place.lights.objects else "AUTO"
+    for thing in roles.real_objects(scene):
+        thing.data.materials.clear()
+        thing.data.materials.append(by_role[thing.panorama_role])
+
+
+def _probe(name, seen_by_camera):
+    material = _emptied(name)
+    tree = material.node_tree
+    camera = add(tree, "ShaderNodeLightPath").outputs["Is Camera Ray"]
+    light = _emission(tree, lookup.lookup(tree, DIFFUSE_LIGHT))
+    _surface(
+        material, add(tree, "ShaderNodeMixShader", {0: camera, 1: light, 2: seen_by_camera(tree)}).outputs[0]
+    )
+    return material
+
+
+def _reflection(tree):
+    """The support's gloss, from the object's own properties."""
+    reflectivity = _object_property(tree, "panorama_reflectivity")
+    return add(
+        tree,
+        "ShaderNodeBsdfAnisotropic",
+        {"Color": reflectivity, "Roughness": _object_property(tree, "panorama_roughness")},
+    ).outputs[0]
+
+
+def _object_property(tree, name):
+    return add(tree, "ShaderNodeAttribute", attribute_type="OBJECT", attribute_name=name).outputs["Fac"]
+
+
+def _emission(tree, colour):
+    return add(tree, "ShaderNodeEmission", {"Color": colour}).outputs[0]
+
+
+def _sum(tree, first, second):
+    return add(tree, "ShaderNodeAddShader", {0: first, 1: second}).outputs[0]
+
+
+def _surface(material, shader):
+    add(material.node_tree, "ShaderNodeOutputMaterial", {"Surface": shader})
+
+
+def _emptied(name):
+    material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    return material

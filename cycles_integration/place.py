@@ -1,0 +1,155 @@
+"""The captured place in a Blender scene: its panorama, its origin, and its rebuilt surfaces.
+
+One Empty at the panorama's origin carries the calibration. Every material looks the photograph up through it,
+so turning or lifting that Empty moves the picture on all surfaces at once (section 5.5.4).
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from . import blender_images, roles
+
+ORIGIN = "Panorama Origin"
+CATCHER = "Panorama Catcher"
+"""An Empty that instances the real surfaces as shadow catchers; the surfaces themselves stay visible, for the
+backplate and for the artist's viewport."""
+PIECE = "panorama_piece"
+"""Custom property of an object: the shape of the set that it was built from."""
+
+
+class Place(bpy.types.PropertyGroup):
+    """What a scene knows of its captured place; everything here is derived and can be made again."""
+
+    collection: bpy.props.PointerProperty(type=bpy.types.Collection)
+    surfaces: bpy.props.PointerProperty(type=bpy.types.Collection)
+    support: bpy.props.PointerProperty(type=bpy.types.Collection)
+    environment: bpy.props.PointerProperty(type=bpy.types.Collection)
+    lights: bpy.props.PointerProperty(type=bpy.types.Collection)
+    origin: bpy.props.PointerProperty(type=bpy.types.Object)
+    catcher: bpy.props.PointerProperty(type=bpy.types.Object)
+    image: bpy.props.PointerProperty(type=bpy.types.Image)
+    residual: bpy.props.PointerProperty(type=bpy.types.Image)
+    irradiance: bpy.props.PointerProperty(type=bpy.types.Image)
+    gloss: bpy.props.PointerProperty(type=bpy.types.Image)
+    sky: bpy.props.PointerProperty(type=bpy.types.Image)
+
+
+def place_of(scene: bpy.types.Scene) -> Place:
+    """Return the scene's place; ValueError where it has none."""
+    place = scene.panorama_place
+    if place.image is None or place.origin is None:
+        raise ValueError(f"scene {scene.name!r} has no panorama: calibrate one first")
+    return place
+
+
+def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
+    """Give the scene a panorama (or another one) and set its calibration."""
+    place = scene.panorama_place
+    place.image = blender_images.load_radiance(image_path)
+    if place.collection is None:
+        place.collection = _child_collection(scene.collection, "Panorama")
+        place.surfaces = _child_collection(place.collection, "Panorama Surfaces")
+        place.support = _child_collection(place.surfaces, "Panorama Support")
+        place.environment = _child_collection(place.surfaces, "Panorama Environment")
+        place.lights = _child_collection(place.collection, "Panorama Lights")
+        place.origin = _empty(place, ORIGIN)
+        place.origin.empty_display_type, place.origin.empty_display_size = "ARROWS", 0.2
+        place.catcher = _empty(place, CATCHER)
+        place.catcher.instance_type, place.catcher.is_shadow_catcher = "COLLECTION", True
+        place.catcher.hide_viewport = True
+    set_calibration(place, calibration.world_from_panorama, calibration.camera_height)
+    return place
+
+
+def set_calibration(place: Place, world_from_panorama: np.ndarray, camera_height: float):
+    """Put the origin at (0, 0, camera_height) [m] with the panorama's orientation."""
+    rotation = Matrix(np.asarray(world_from_panorama).tolist()).to_4x4()
+    place.origin.matrix_world = Matrix.Translation((0, 0, camera_height)) @ rotation
+
+
+def update_pieces(place: Place, pieces) -> list[bpy.types.Object]:
+    """Build the pieces of a reconstruction, or bring those already built up to date.
+
+    Objects are found by name: their identity, modifiers and children stay. Objects of the place that no piece
+    names any more are removed.
+    """
+    before = {thing[PIECE]: thing for thing in place.surfaces.all_objects if PIECE in thing}
+    built = [_update_piece(place, before.pop(piece.name, None), piece) for piece in pieces]
+    for thing in before.values():
+        bpy.data.objects.remove(thing)
+    return built
+
+
+def _update_piece(place, thing, piece):
+    if thing is None:
+        thing = bpy.data.objects.new(piece.name, bpy.data.meshes.new(piece.name))
+        thing[PIECE] = piece.name
+        place.surfaces.objects.link(thing)
+    thing.data.clear_geometry()
+    thing.data.from_pydata(piece.mesh.vertices.tolist(), [], [list(face) for face in piece.mesh.faces])
+    thing.matrix_world = Matrix(piece.mesh.world_from_local.tolist())
+    thing.panorama_role = piece.role
+    thing.panorama_reflectivity, thing.panorama_roughness = piece.reflectivity, piece.roughness
+    thing.display_type = "WIRE" if piece.role == roles.ENVIRONMENT else "TEXTURED"
+    return thing
+
+
+def sort_objects(scene: bpy.types.Scene, place: Place):
+    """Move every real mesh into the collection of its role, and new objects out of there.
+
+    View layers leave out whole collections, never single objects; so roles have collections of their own.
+    """
+    collections = {roles.SUPPORT: place.support, roles.ENVIRONMENT: place.environment}
+    for thing in scene.objects:
+        if thing.type == "MESH" and thing.panorama_role in collections:
+            _move(thing, collections[thing.panorama_role])
+    ours = {place.collection, *place.collection.children_recursive}
+    for thing in scene.objects:
+        if thing.type != "MESH" or thing.panorama_role == roles.SYNTHETIC:
+            stray = set(thing.users_collection) <= ours | {scene.collection}
+            if (
+                stray
+                and thing not in (place.origin, place.catcher)
+                and thing.name not in place.lights.objects
+            ):
+                _move(thing, _synthetic_collection(scene))
+
+
+def _move(thing, collection):
+    for other in thing.users_collection:
+        if other != collection:
+            other.objects.unlink(thing)
+    if thing.name not in collection.objects:
+        collection.objects.link(thing)
+
+
+def _synthetic_collection(scene):
+    existing = (c for c in scene.collection.children if c.name.startswith("Synthetic"))
+    return next(existing, None) or _child_collection(scene.collection, "Synthetic")
+
+
+def _empty(place, name):
+    thing = bpy.data.objects.new(name, None)
+    place.collection.objects.link(thing)
+    return thing
+
+
+def _child_collection(parent, name):
+    collection = bpy.data.collections.new(name)
+    parent.children.link(collection)
+    return collection
+
+
+def register():
+    """Give every scene its place."""
+    bpy.utils.register_class(Place)
+    bpy.types.Scene.panorama_place = bpy.props.PointerProperty(type=Place)
+
+
+def unregister():
+    """Take it back."""
+    del bpy.types.Scene.panorama_place
+    bpy.utils.unregister_class(Place)

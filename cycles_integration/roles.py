@@ -1,0 +1,58 @@
+"""What an object is to the composite: new, real and interacting, or real and only lighting (section
+5.6.1)."""
+
+from __future__ import annotations
+
+import bpy
+
+SYNTHETIC, SUPPORT, ENVIRONMENT = "SYNTHETIC", "SUPPORT", "ENVIRONMENT"
+ROLES = (
+    (SYNTHETIC, "Synthetic", "A new object: lit by the place, it casts shadows on it and reflects it"),
+    (
+        SUPPORT,
+        "Support",
+        "A real surface that receives shadows, bounced light and reflections of new objects",
+    ),
+    (
+        ENVIRONMENT,
+        "Environment",
+        "A real surface that shows the photograph and lights with it, and nothing more",
+    ),
+)
+
+
+def real_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return the scene's meshes that stand for real surfaces."""
+    return [o for o in scene.objects if o.type == "MESH" and o.panorama_role != SYNTHETIC]
+
+
+def with_role(scene: bpy.types.Scene, role: str) -> list[bpy.types.Object]:
+    """Return the real meshes of one role."""
+    return [o for o in real_objects(scene) if o.panorama_role == role]
+
+
+def register():
+    """Give every object its role and, for a glossy support, its reflection."""
+    bpy.types.Object.panorama_role = bpy.props.EnumProperty(
+        name="Role", description="What this object is to the composite", items=ROLES, default=SYNTHETIC
+    )
+    bpy.types.Object.panorama_reflectivity = bpy.props.FloatProperty(
+        name="Reflectivity",
+        description="Share of light that this real surface mirrors, in 0 to 1; the photograph stays as it is",
+        min=0,
+        max=1,
+    )
+    bpy.types.Object.panorama_roughness = bpy.props.FloatProperty(
+        name="Roughness",
+        description="Blur of this real surface's reflections, in 0 to 1",
+        min=0,
+        max=1,
+        default=0.2,
+    )
+
+
+def unregister():
+    """Take the properties back."""
+    del bpy.types.Object.panorama_roughness
+    del bpy.types.Object.panorama_reflectivity
+    del bpy.types.Object.panorama_role

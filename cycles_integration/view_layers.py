@@ -1,0 +1,87 @@
+"""The view layers of the render methods: which collections each sees, and what it passes on."""
+
+from __future__ import annotations
+
+import bpy
+
+from . import materials
+
+OBJECTS, BACKPLATE, WITHOUT, MASK = (
+    "Panorama Objects",
+    "Panorama Backplate",
+    "Panorama Without",
+    "Panorama Mask",
+)
+OURS = (OBJECTS, BACKPLATE, WITHOUT, MASK)
+BACKPLATE_SAMPLES, MASK_SAMPLES = 16, 16
+
+
+def add_objects(scene, place, *, as_catchers: bool, with_environment: bool) -> bpy.types.ViewLayer:
+    """The new objects in the place, whose surfaces are shadow catchers or plainly rendered."""
+    layer = _layer(scene, OBJECTS)
+    layer_collection(layer, place.surfaces).exclude = as_catchers
+    layer_collection(layer, place.lights).exclude = not with_environment
+    place.catcher.hide_render = not as_catchers
+    place.catcher.instance_collection = place.surfaces if with_environment else place.support
+    layer.cycles.use_pass_shadow_catcher = as_catchers
+    return layer
+
+
+def add_backplate(scene, place) -> bpy.types.ViewLayer:
+    """The photograph, projected on the real surfaces and seen by the scene's camera, and what lies at
+    infinity."""
+    layer = _real_only(scene, place, BACKPLATE)
+    layer.material_override = materials.backplate_material()
+    layer.use_pass_environment = True
+    layer.samples = BACKPLATE_SAMPLES
+    return layer
+
+
+def add_without(scene, place) -> bpy.types.ViewLayer:
+    """The place as the renderer lights it, without the new objects."""
+    return _real_only(scene, place, WITHOUT)
+
+
+def add_mask(scene, place) -> bpy.types.ViewLayer:
+    """The new objects' coverage: the real surfaces cut holes."""
+    layer = _layer(scene, MASK)
+    for collection in (place.support, place.environment):  # the flag does not reach child collections
+        layer_collection(layer, collection).holdout = True
+    layer.material_override = materials.black_material()
+    layer.samples = MASK_SAMPLES
+    return layer
+
+
+def remove_ours(scene):
+    """Remove the layers of any method; the artist's own layer is for the viewport and renders no more."""
+    for layer in list(scene.view_layers):
+        if layer.name in OURS:
+            scene.view_layers.remove(layer)
+        else:
+            layer.use = False
+
+
+def layer_collection(layer, collection) -> bpy.types.LayerCollection:
+    """Return the layer's handle on a collection, at any depth."""
+
+    def find(parent):
+        for child in parent.children:
+            found = child if child.collection == collection else find(child)
+            if found:
+                return found
+        return None
+
+    return find(layer.layer_collection)
+
+
+def _real_only(scene, place, name):
+    layer = _layer(scene, name)
+    for child in layer.layer_collection.children:
+        child.exclude = child.collection != place.collection
+    return layer
+
+
+def _layer(scene, name):
+    layer = scene.view_layers.new(name)
+    layer.cycles.use_denoising = name in (OBJECTS, WITHOUT)
+    return layer
