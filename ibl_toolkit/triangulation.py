@@ -15,6 +15,8 @@ def triangulate(points):
     >>> triangulate(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])).tolist()
     [[3, 0, 1], [1, 2, 3]]
     """
+    if len(points) == 3:
+        return np.array([[0, 1, 2]])
     flat = _in_its_plane(np.asarray(points, dtype=np.float64))
     left = list(range(len(flat)))
     triangles = []
