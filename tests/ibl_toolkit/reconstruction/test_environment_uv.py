@@ -82,3 +82,13 @@ def test_less_error_takes_more_faces():
     assert counts[0] < counts[1] < counts[2]
     with pytest.raises(ValueError, match="max_error_px is 0"):
         subdivide_for_uv(ROOM.mesh, np.eye(3), 1.5, WIDTH, 0)
+
+
+def test_a_pole_on_a_side_becomes_one_vertex_for_both_its_faces():
+    centred = rectangle(
+        [[-3, -2], [3, -2], [3, 2]]
+    ).mesh  # the nadir lies on the diagonal of any two triangles
+    divided = subdivide_for_uv(centred, np.eye(3), 1.5, WIDTH, max_error_px=16).mesh
+    at_nadir = np.linalg.norm(divided.world_vertices[:, :2], axis=1) < EXACT
+    assert np.count_nonzero(at_nadir) == 1
+    assert open_sides(divided) == pytest.approx(20)
