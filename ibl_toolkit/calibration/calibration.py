@@ -99,16 +99,19 @@ def calibrate(picks, image_size):
         raise CalibrationError(f"scale: exactly one of camera_height and length must be given, got {given}")
     clicks = collect_clicks(picks, image_size)
     check_shapes(clicks)
-    conditions, adjustment, rival = orient(clicks)
+    conditions, adjustment, rivals = orient(clicks)
     rotation = final_rotation(conditions, adjustment)
-    low = check_horizon(clicks, rotation)
+    disagreeing = disagreement(clicks, conditions, adjustment, 180.0 * CLICK_ERROR_PIXELS / image_size[1])
+    try:
+        low = check_horizon(clicks, rotation)
+    except CalibrationError as error:  # picks that contradict each other may drive one over the horizon
+        raise CalibrationError("; ".join([str(error), *disagreeing])) from None
     uncertainty = propagate(conditions, adjustment)
     scale_percent = 100.0 * relative_scale_error(clicks, adjustment.world_from_panorama, uncertainty)
     poor = check_uncertainty(clicks, rotation, uncertainty, scale_percent)
     height = picks.camera_height
     if height is None:
         height = picks.length.metres / floor_length(clicks, clicks.length, rotation)
-    degrees_per_click_error = 180.0 * CLICK_ERROR_PIXELS / image_size[1]
     return Calibration(
         world_from_panorama=_read_only(rotation),
         camera_height=float(height),
@@ -118,8 +121,8 @@ def calibrate(picks, image_size):
         uncertainty_scale_percent=scale_percent,
         condition=uncertainty.condition,
         warnings=(
-            *check_evidence(clicks, conditions, rotation, adjustment.redundancy, rival),
-            *disagreement(clicks, conditions, adjustment, degrees_per_click_error),
+            *check_evidence(clicks, conditions, rotation, adjustment.redundancy, rivals),
+            *disagreeing,
             *low,
             *poor,
         ),

@@ -40,6 +40,20 @@ def side_directions(corners):
     return sides / np.linalg.norm(sides, axis=-1, keepdims=True)
 
 
+def reverse_depth(sides, corners):
+    """Sides (2, 3) of the figure that looks alike from afar with near and far exchanged (Necker's cube).
+
+    Mirrored in the plane across the line of sight to its middle; corners (4, 3) are its directions.
+
+    >>> import numpy as np
+    >>> reverse_depth(np.array([[0.6, 0.0, 0.8], [0.0, 1.0, 0.0]]), np.array([[0.0, 0.0, 1.0]] * 4)).tolist()
+    [[0.6, 0.0, -0.8], [0.0, 1.0, 0.0]]
+    """
+    sight = corners.sum(axis=0)
+    sight = sight / np.linalg.norm(sight)
+    return sides - 2.0 * np.outer(sides @ sight, sight)
+
+
 def vanishing_direction(normals):
     """The unit direction (3,) nearest to all planes of unit normals (k, 3), k ≥ 2; its sign is free.
 

@@ -4,23 +4,30 @@ from dataclasses import replace
 
 import numpy as np
 
-from .adjustment import adjust
+from .adjustment import MOST_STEPS, RIVAL_STEPS, adjust
 from .conditions import build_conditions
 from .directions import minimal_rotation
 from .picks import CalibrationError
 from .start import start_values
+from .uncertainty import propagate
 
-# A start that ends in a misfit of no more than this many click errors (1½ pixels) needs no rival. Real clicks
-# err by a pixel or two; a wall whose level sides were taken for the upright ones misfits by tens.
+# Misfit of at most this many click errors (1½ pixels): careful clicks err by half a pixel to that.
 GOOD_MISFIT = 3.0
-# Verticals that differ by more than this are different answers, not the same one reached twice.
-RIVAL_COSINE = 0.7
+# Solutions whose costs differ by less are told apart by chance: three standard deviations for clicks that err
+# by a whole pixel, (3 · 2)².
+RIVAL_COST = 36.0
+# A figure that could be taken for its reverse in depth tells the tilt only to a degree or more (see the tests);
+# half of that leaves a margin.
+DOUBTFUL_TILT = np.radians(0.5)
+# Starts within this of a solution lead to it again; solutions farther apart are different answers.
+SAME_VERTICAL_COSINE = np.cos(np.radians(5.0))
 
 
 def orient(clicks):
-    """(Conditions, Adjustment, rival) of the most likely orientation.
+    """(Conditions, Adjustment, rivals) of the most likely orientation.
 
-    rival: True if walls decide the vertical, but all would fit as well with their level sides standing up.
+    rivals: tilts [deg] of other verticals that chance could have made as likely. Of those the one nearest
+    to the panorama's own top is taken: tripods stand.
     Raises: CalibrationError if no orientation comes near the picks.
     """
     found = _solutions(clicks)
@@ -31,30 +38,54 @@ def orient(clicks):
             f"the picks contradict each other: no orientation comes near all of them{without}; check planes "
             f"and axes, and that corners were clicked in order"
         )
-    # The first of equals: walls list the sides nearer to the panorama's own vertical first.
-    best = min(found, key=lambda one: max(misfit(one[1]), GOOD_MISFIT))
-    up = best[1].world_from_panorama[2]
-    rival = any(
-        misfit(other) <= max(misfit(best[1]), GOOD_MISFIT)
-        and abs(np.dot(up, other.world_from_panorama[2])) < RIVAL_COSINE
-        for _, other in found
-    )
-    return *best, rival
+    least = min(solution.cost for _, solution in found)
+    alike = [one for one in found if one[1].cost <= least + RIVAL_COST]
+    alike = [one for one in alike if _right_side_up(clicks, one[1])] or alike
+    alike.sort(key=lambda one: -one[1].world_from_panorama[2, 2])
+    best, others = alike[0], [_up(solution) for _, solution in alike[1:]]
+    rivals = {
+        round(float(np.degrees(np.arccos(up[2]))))
+        for up in others
+        if up @ _up(best[1]) < SAME_VERTICAL_COSINE
+    }
+    return *best, sorted(rivals)
 
 
 def _solutions(clicks):
-    """All (Conditions, Adjustment) worth comparing, one per start value that leads to a minimum."""
-    level = any(quad.plane != "WALL" for quad in clicks.quads)
-    only_walls_stand = not level and any(clicks.quads)
-    found = []
+    """All different (Conditions, Adjustment) that the start values lead to, until one leaves no doubt."""
+    found, steps = [], MOST_STEPS
     for start in start_values(clicks):
+        up = start.world_from_panorama[2]
+        if any(up @ _up(other) > SAME_VERTICAL_COSINE and misfit(other) <= GOOD_MISFIT for _, other in found):
+            continue
         conditions = build_conditions(clicks, start.upright_pairs)
-        solution = adjust(clicks, conditions, start.world_from_panorama, start.azimuths)
-        if solution.converged:
-            found.append((conditions, solution))
-            if misfit(solution) <= GOOD_MISFIT and not only_walls_stand:
+        solution = adjust(clicks, conditions, start.world_from_panorama, start.azimuths, steps)
+        if not solution.converged:
+            continue
+        found.append((conditions, solution))
+        if misfit(solution) <= GOOD_MISFIT:
+            steps = RIVAL_STEPS
+            if _beyond_doubt(clicks, conditions, solution):
                 break
     return found
+
+
+def _beyond_doubt(clicks, conditions, solution):
+    """Whether no other vertical comes as near: strong perspective, and not only walls to say what stands."""
+    level = any(quad.plane != "WALL" for quad in clicks.quads) or not clicks.quads
+    return level and propagate(conditions, solution).tilt < DOUBTFUL_TILT
+
+
+def _up(adjustment):
+    return np.clip(adjustment.world_from_panorama[2], -1.0, 1.0)
+
+
+def _right_side_up(clicks, adjustment):
+    """Whether the floor lies below and the ceiling above the horizon."""
+    elevation = clicks.directions @ _up(adjustment)
+    return not (
+        np.any(elevation[clicks.floor_clicks()] > 0.0) or np.any(elevation[clicks.ceiling_clicks()] < 0.0)
+    )
 
 
 def _parts(clicks):

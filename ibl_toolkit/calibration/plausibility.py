@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .directions import angle_between, side_directions
+from .directions import angle_between
 from .picks import CalibrationError
 
 # A floor point half a degree below the horizon is 115 camera heights away: half a pixel of a 4k image moves
@@ -105,8 +105,8 @@ def _span_deg(clicks, quad):
     return float(np.degrees(min(angle_between(a, c), angle_between(b, d))))
 
 
-def check_evidence(clicks, conditions, world_from_panorama, redundancy, rival):
-    """Warnings (list of str) about what the picks could not say: up, azimuth, a wall's sides, a check."""
+def check_evidence(clicks, conditions, world_from_panorama, redundancy, rivals):
+    """Warnings (list of str) about what the picks could not say: which way is up, the azimuth, a check."""
     warnings = []
     tilt_deg = np.degrees(np.arccos(np.clip(world_from_panorama[2, 2], -1.0, 1.0)))
     if not (clicks.floor_clicks() or clicks.ceiling_clicks()):
@@ -124,11 +124,10 @@ def check_evidence(clicks, conditions, world_from_panorama, redundancy, rival):
         warnings.append(
             "nothing gives an azimuth: +x stays near the panorama's; add a rectangle or parallels"
         )
-    if rival:
-        sides = side_directions(clicks.directions[list(clicks.quads[0].clicks)])
-        lean_deg = np.sort(np.degrees(np.arccos(np.minimum(np.abs(sides[:, 2]), 1.0))))
+    if rivals:
+        others = " or ".join(f"{rival}°" for rival in rivals)
         warnings.append(
-            f"{clicks.quads[0].name}: either pair of its sides could be upright; taken was the one that "
-            f"leans {lean_deg[0]:.0f}° against the panorama's own vertical (the other: {lean_deg[1]:.0f}°)"
+            f"the picks fit other verticals as well: tilt {others} instead of {tilt_deg:.0f}°, which is "
+            f"nearest to the panorama's own top; add verticals or a larger rectangle"
         )
     return warnings

@@ -5,9 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from .conditions import anchor_quad
-from .directions import minimal_rotation, side_directions, vanishing_direction
+from .directions import (
+    angle_between,
+    minimal_rotation,
+    reverse_depth,
+    side_directions,
+    vanishing_direction,
+)
 from .picks import CalibrationError
 
+# Perspective tells near from far by the square of a figure's extent: (30°)² is 15°, more than any click errs.
+REVERSIBLE_SPAN = np.radians(30.0)
 PARALLEL = 1e-6  # a cross product of unit vectors below this says nothing about the vertical
 
 
@@ -28,13 +36,28 @@ def start_values(clicks):
     floor, ceiling = (clicks.directions[k].sum(0) for k in (clicks.floor_clicks(), clicks.ceiling_clicks()))
     corners = clicks.directions[np.array([quad.clicks for quad in clicks.quads], dtype=int).reshape(-1, 4)]
     sides = side_directions(corners)
-    candidates = [
-        up / np.linalg.norm(up) for up in _verticals(clicks, sides) if np.linalg.norm(up) > PARALLEL
-    ]
-    if not candidates:
+    views = [(sides, _verticals(clicks, sides))]
+    # A small figure looks the same with near and far exchanged, so its start may fall on the wrong side.
+    for number in np.flatnonzero(_spans(corners) < REVERSIBLE_SPAN):
+        reversed_sides = sides.copy()
+        reversed_sides[number] = reverse_depth(sides[number], corners[number])
+        views.append((reversed_sides, _rectangle_verticals(clicks.quads[number], reversed_sides[number])))
+    none = True
+    for these_sides, verticals in views:
+        for up in verticals:
+            if np.linalg.norm(up) > PARALLEL:
+                none = False
+                up = up / np.linalg.norm(up)
+                yield _complete(clicks, these_sides, up * _sign(up, ceiling - floor))
+    if none:
         raise CalibrationError(_missing(clicks))
-    for up in candidates:
-        yield _complete(clicks, sides, up * _sign(up, ceiling - floor))
+
+
+def _spans(corners):
+    """The longer diagonal [rad] of each figure (q, 4, 3) as the camera sees it."""
+    return np.maximum(
+        angle_between(corners[:, 0], corners[:, 2]), angle_between(corners[:, 1], corners[:, 3])
+    )
 
 
 def _sign(up, up_votes):
@@ -45,17 +68,20 @@ def _sign(up, up_votes):
 
 def _verticals(clicks, sides):
     """Candidates for the vertical (3,), of either sign: level rectangles, then lines, then walls."""
-    level = np.array([quad.plane != "WALL" for quad in clicks.quads], dtype=bool)
-    yield from np.cross(sides[level, 0], sides[level, 1])
-    normals = {axis: _line_normals(clicks, axis) for axis in "XYZ"}
-    if len(normals["Z"]) >= 2:
-        yield vanishing_direction(normals["Z"])
-    yield from _from_parallels(normals)
-    # Of a wall's sides those nearer to the panorama's own vertical come first.
-    nearer = np.argmax(np.abs(sides[~level, :, 2]), axis=1)
-    walls = np.arange(len(nearer))
-    yield from sides[~level][walls, nearer]
-    yield from sides[~level][walls, 1 - nearer]
+    for wall in (False, True):
+        for quad, pair in zip(clicks.quads, sides, strict=True):
+            if (quad.plane == "WALL") == wall:
+                yield from _rectangle_verticals(quad, pair)
+        if not wall:
+            normals = {axis: _line_normals(clicks, axis) for axis in "XYZ"}
+            if len(normals["Z"]) >= 2:
+                yield vanishing_direction(normals["Z"])
+            yield from _from_parallels(normals)
+
+
+def _rectangle_verticals(quad, sides):
+    """The normal of a level rectangle, either side of a wall."""
+    return sides if quad.plane == "WALL" else [np.cross(*sides)]
 
 
 def _from_parallels(normals):

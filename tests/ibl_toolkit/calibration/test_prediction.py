@@ -31,7 +31,7 @@ TRIALS = 200
 # The spread of an rms over 200 trials is 1/√(2·200) = 5 % for one direction of error; this is 4 of those.
 RATIO = (0.8, 1.2)
 # Shares of a normal error within 1σ and 2σ: in one dimension 0.683 and 0.954; of a vector within its rms
-# 0.632 (round) to 0.683 (flat), within twice of it 0.982 to 0.954. Their spread over 200 trials: 0.034, 0.015.
+# 0.632 (round) to 0.683 (flat), within twice of it 0.982 to 0.954. Spread over 200 trials: 0.034, 0.015.
 WITHIN_1, WITHIN_2 = (0.53, 0.78), (0.91, 1.0)
 
 

@@ -12,6 +12,7 @@ from known_room import (
     SKYLIGHT,
     TILE,
     WINDOW,
+    angle_deg,
     clicked,
     seen,
     turned,
@@ -124,7 +125,7 @@ def test_a_ceiling_called_floor_is_not_silent():
 def test_a_lone_wall_tells_what_it_could_not_know():
     warnings = warnings_of(Rectangle(seen(WINDOW), "WALL"))
     one(warnings, "own top was taken for up")
-    one(warnings, "either pair of its sides could be upright")
+    one(warnings, "the picks fit other verticals as well", "instead of 13°")
 
 
 def test_a_wall_with_verticals_knows_its_sides_even_if_the_camera_lay_on_its_side():
@@ -138,3 +139,18 @@ def test_a_wall_with_verticals_knows_its_sides_even_if_the_camera_lay_on_its_sid
 
 def test_without_redundancy_it_says_so():
     one(warnings_of(verticals=seen(CORNERS)), "no pick is redundant")
+
+
+def test_a_small_far_rectangle_is_not_turned_inside_out():
+    """Near and far exchanged it looks almost the same; eq. 5.2 alone starts on the wrong side at times."""
+    rng = np.random.default_rng(2)
+    small = np.array([[6.48, 0.73, 0.0], [5.67, 1.17, 0.0], [5.41, 0.70, 0.0], [6.22, 0.26, 0.0]])
+    level = rotation_from_vector([0.05, -0.1, 0.4])
+    rivals = 0
+    for _ in range(30):
+        picks = CalibrationPicks((Rectangle(clicked(seen(small, level), rng)),), camera_height=CAMERA_HEIGHT)
+        result = calibrate(picks, SIZE)
+        off_deg = angle_deg(result.world_from_panorama[2], level[2])
+        assert off_deg < 5.0 * result.uncertainty_tilt_deg
+        rivals += any("fit other verticals as well" in warning for warning in result.warnings)
+    assert rivals > 15
