@@ -16,8 +16,8 @@ GOOD_MISFIT = 3.0
 # Solutions whose costs differ by less are told apart by chance: three standard deviations for clicks that err
 # by a whole pixel, (3 · 2)².
 RIVAL_COST = 36.0
-# A figure that could be taken for its reverse in depth tells the tilt only to a degree or more (see the tests);
-# half of that leaves a margin.
+# A figure that could be taken for its reverse in depth tells the tilt only to a degree or more (see the
+# tests); half of that leaves a margin.
 DOUBTFUL_TILT = np.radians(0.5)
 # Starts within this of a solution lead to it again; solutions farther apart are different answers.
 SAME_VERTICAL_COSINE = np.cos(np.radians(5.0))

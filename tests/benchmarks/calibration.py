@@ -292,12 +292,13 @@ def main():
     ratios = {"tilt": scenes[:, 1] / scenes[:, 0], "scale": scenes[:, 3] / scenes[:, 2]}
     report = {
         "caption": (
-            f"Calibration from a floor rectangle whose first side is known, {IMAGE_SIZE[0]} × {IMAGE_SIZE[1]} "
-            f"panorama, camera at {CAMERA_HEIGHT} m tilted by 10°. Marks: rms of {TRIALS} simulated calibrations "
-            f"with normal click errors; lines: first-order prediction from the exact picks; none where picks are "
-            f"refused. a: against click noise. b, c: against distance at half a pixel. d: against size at half a "
-            f"pixel. e: {SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials "
-            f"within k predicted σ."
+            f"Calibration from a floor rectangle whose first side is known, {IMAGE_SIZE[0]} × "
+            f"{IMAGE_SIZE[1]} panorama, camera at {CAMERA_HEIGHT} m tilted by 10°. Marks: rms of {TRIALS} "
+            f"simulated calibrations with normal click errors; lines: first-order prediction from the exact "
+            f"picks. Refused trials don't count, and nothing is drawn where most are (refused_share). a: "
+            f"against click noise. b, c: against distance at half a pixel. d: against size at half a pixel. e: "
+            f"{SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials within k "
+            f"predicted σ."
         ),
         "image_size": IMAGE_SIZE,
         "trials": TRIALS,
