@@ -296,8 +296,8 @@ def main():
             f"{IMAGE_SIZE[1]} panorama, camera at {CAMERA_HEIGHT} m tilted by 10°. Marks: rms of {TRIALS} "
             f"simulated calibrations with normal click errors; lines: first-order prediction from the exact "
             f"picks. Refused trials don't count, and nothing is drawn where most are (refused_share). a: "
-            f"against click noise. b, c: against distance at half a pixel. d: against size at half a pixel. e: "
-            f"{SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials within k "
+            f"against click noise. b, c: against distance at half a pixel. d: against size at half a pixel. "
+            f"e: {SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials within k "
             f"predicted σ."
         ),
         "image_size": IMAGE_SIZE,
