@@ -297,8 +297,8 @@ def main():
             f"simulated calibrations with normal click errors; lines: first-order prediction from the exact "
             f"picks. Refused trials don't count, and nothing is drawn where most are (refused_share). a: "
             f"against click noise. b, c: against distance at half a pixel. d: against size at half a pixel. "
-            f"e: {SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials within k "
-            f"predicted σ."
+            f"e: {SCENES} random scenes, rms of {SCENE_TRIALS} trials each. f: share of these trials within "
+            f"k predicted σ."
         ),
         "image_size": IMAGE_SIZE,
         "trials": TRIALS,
