@@ -28,6 +28,7 @@ class Place(bpy.types.PropertyGroup):
     support: bpy.props.PointerProperty(type=bpy.types.Collection)
     environment: bpy.props.PointerProperty(type=bpy.types.Collection)
     lights: bpy.props.PointerProperty(type=bpy.types.Collection)
+    catchers: bpy.props.PointerProperty(type=bpy.types.Collection)
     origin: bpy.props.PointerProperty(type=bpy.types.Object)
     catcher: bpy.props.PointerProperty(type=bpy.types.Object)
     image: bpy.props.PointerProperty(type=bpy.types.Image)
@@ -55,9 +56,10 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
         place.support = _child_collection(place.surfaces, "Panorama Support")
         place.environment = _child_collection(place.surfaces, "Panorama Environment")
         place.lights = _child_collection(place.collection, "Panorama Lights")
-        place.origin = _empty(place, ORIGIN)
+        place.origin = _empty(place.collection, ORIGIN)
         place.origin.empty_display_type, place.origin.empty_display_size = "ARROWS", 0.2
-        place.catcher = _empty(place, CATCHER)
+        place.catchers = _child_collection(place.collection, "Panorama Catchers")
+        place.catcher = _empty(place.catchers, CATCHER)
         place.catcher.instance_type, place.catcher.is_shadow_catcher = "COLLECTION", True
         place.catcher.hide_viewport = True
     set_calibration(place, calibration.world_from_panorama, calibration.camera_height)
@@ -131,9 +133,9 @@ def _synthetic_collection(scene):
     return next(existing, None) or _child_collection(scene.collection, "Synthetic")
 
 
-def _empty(place, name):
+def _empty(collection, name):
     thing = bpy.data.objects.new(name, None)
-    place.collection.objects.link(thing)
+    collection.objects.link(thing)
     return thing
 
 

@@ -78,6 +78,7 @@ def _real_only(scene, place, name):
     layer = _layer(scene, name)
     for child in layer.layer_collection.children:
         child.exclude = child.collection != place.collection
+    layer_collection(layer, place.catchers).exclude = True  # a second copy of every surface, in the same spot
     return layer
 
 
