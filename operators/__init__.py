@@ -1,9 +1,23 @@
 """Blender operators and property groups: read the scene, call one function, report."""
 
+import bpy
+
+from . import calibration, light, picking, pictures, probes, properties, set_files, surfaces
+
+OPERATORS = (set_files, picking, calibration, probes, surfaces, light, pictures)
+
 
 def register():
-    """Nothing to register yet."""
+    """Register the scene's panorama set, then the operators on it."""
+    properties.register()
+    for module in OPERATORS:
+        for cls in module.classes:
+            bpy.utils.register_class(cls)
 
 
 def unregister():
-    """Nothing to take back yet."""
+    """Take them back, in reverse."""
+    for module in reversed(OPERATORS):
+        for cls in reversed(module.classes):
+            bpy.utils.unregister_class(cls)
+    properties.unregister()

@@ -1,9 +1,21 @@
 """What people look at: panels, overlays and menus."""
 
+import bpy
+
+from . import image_editor, lists, sidebar
+
+PANELS = (lists, sidebar, image_editor)
+
 
 def register():
-    """Nothing to register yet."""
+    """Register lists and panels."""
+    for module in PANELS:
+        for cls in module.classes:
+            bpy.utils.register_class(cls)
 
 
 def unregister():
-    """Nothing to take back yet."""
+    """Take them back, in reverse."""
+    for module in reversed(PANELS):
+        for cls in reversed(module.classes):
+            bpy.utils.unregister_class(cls)

@@ -1,0 +1,124 @@
+"""Operators that render: a frame through the scene's camera, or the whole panorama."""
+
+import contextlib
+
+import bpy
+from bpy_extras.io_utils import ExportHelper
+
+from ..cycles_integration.place import place_of
+from ..cycles_integration.rendering import Picture, panorama_camera, render_picture, set_up_picture
+from . import progress
+from .reporting import Reporting, possible
+
+OUTPUT = ("media_type", "file_format", "color_mode", "color_depth")
+
+
+class _ThroughCamera(Reporting):
+    """An operator on a picture through the scene's camera."""
+
+    @classmethod
+    def poll(cls, context):
+        """There must be maps and a camera."""
+        return possible(cls, progress.camera_missing(context.scene))
+
+
+class PANORAMA_OT_set_up_picture(_ThroughCamera, bpy.types.Operator):
+    """Set render layers and compositor up, so that F12 gives the finished picture"""
+
+    bl_idname = "panorama.set_up_picture"
+    bl_label = "Set Up for F12"
+
+    def work(self, context):
+        """Set up without rendering."""
+        picture = frame(context.scene)
+        set_up_picture(context.scene, context.scene.camera, picture)
+        return f"F12 renders {picture.width} × {picture.height} by the method {picture.method}"
+
+
+class PANORAMA_OT_render_frame(_ThroughCamera, bpy.types.Operator):
+    """Render the new objects into the photograph through the scene's camera"""
+
+    bl_idname = "panorama.render_frame"
+    bl_label = "Render Frame"
+
+    filepath: bpy.props.StringProperty(
+        name="File", description="Float OpenEXR file to write; none: the Render Result", subtype="FILE_PATH"
+    )
+
+    def work(self, context):
+        """Set up and render: in the render window where there is one, else here and now."""
+        scene = context.scene
+        picture = frame(scene)
+        if self.filepath:
+            with output_kept(scene):
+                render_picture(scene, scene.camera, picture, bpy.path.abspath(self.filepath))
+            return f"Wrote {self.filepath}"
+        set_up_picture(scene, scene.camera, picture)
+        bpy.ops.render.render("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
+        return f"{picture.width} × {picture.height}, {picture.samples} samples, method {picture.method}"
+
+
+class PANORAMA_OT_render_panorama(Reporting, ExportHelper, bpy.types.Operator):
+    """Render the whole panorama with the new objects to a float OpenEXR file; Blender waits meanwhile"""
+
+    bl_idname = "panorama.render_panorama"
+    bl_label = "Render Panorama"
+
+    filename_ext = ".exr"
+    filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
+    width: bpy.props.IntProperty(
+        name="Width",
+        description="Width of the panorama [pixels], its height is half of it; 0: as wide as the photograph",
+        default=0,
+        min=0,
+        soft_max=16384,
+        step=2,
+    )
+
+    @classmethod
+    def poll(cls, context):
+        """There must be maps."""
+        return possible(cls, progress.maps_missing(context.scene))
+
+    def work(self, context):
+        """Render, then set the scene up for its own camera again."""
+        scene = context.scene
+        own_camera, own_picture = scene.camera, frame(scene)
+        width = self.width or place_of(scene).image.size[0]
+        with panorama_camera(scene) as camera, output_kept(scene):
+            render_picture(scene, camera, picture_of(scene, width, width // 2), self.filepath)
+        if own_camera is not None:
+            set_up_picture(scene, own_camera, own_picture)
+        else:
+            scene.render.resolution_x, scene.render.resolution_y = own_picture.width, own_picture.height
+        return f"Wrote {self.filepath}: {width} × {width // 2}"
+
+
+def frame(scene) -> Picture:
+    """The picture in the scene's own resolution."""
+    render = scene.render
+    share = render.resolution_percentage / 100
+    return picture_of(scene, round(render.resolution_x * share), round(render.resolution_y * share))
+
+
+def picture_of(scene, width, height) -> Picture:
+    """The picture of some size by the scene's settings."""
+    job = scene.panorama_set.job
+    return Picture(width, height, job.samples, job.seed, job.method, job.denoise)
+
+
+@contextlib.contextmanager
+def output_kept(scene):
+    """Give the scene its output path and format back afterwards."""
+    settings = scene.render.image_settings
+    names = [name for name in OUTPUT if hasattr(settings, name)]
+    kept, path = [getattr(settings, name) for name in names], scene.render.filepath
+    try:
+        yield
+    finally:
+        scene.render.filepath = path
+        for name, value in zip(names, kept, strict=True):
+            setattr(settings, name, value)
+
+
+classes = (PANORAMA_OT_set_up_picture, PANORAMA_OT_render_frame, PANORAMA_OT_render_panorama)

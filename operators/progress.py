@@ -1,0 +1,101 @@
+"""How far the work on a scene's panorama is: for each step what is missing, "" where nothing is."""
+
+from ..cycles_integration import roles
+from . import conversion
+
+ORIENTING = ("RECTANGLE", "PARALLELS", "VERTICAL")
+
+
+def image_missing(scene) -> str:
+    """What step 1 still needs."""
+    return "" if scene.panorama_set.image_path else "Open a panorama first"
+
+
+def picks_missing(scene) -> str:
+    """What step 2 needs before it can be solved."""
+    state = scene.panorama_set
+    if image_missing(scene):
+        return image_missing(scene)
+    if not any(pick.kind in ORIENTING for pick in state.picks):
+        return "Add a rectangle, floor lines or verticals, or import a set"
+    try:
+        picks = conversion.picks_from_state(state)
+    except ValueError as error:
+        return str(error)
+    if picks.camera_height is None and picks.length is None:
+        return "Give the camera height or a known length"
+    return ""
+
+
+def calibration_missing(scene) -> str:
+    """What step 2 lacks for those after it."""
+    place = scene.panorama_place
+    done = scene.panorama_set.result.is_solved and place.image and place.origin
+    return "" if done else "Calibrate first"
+
+
+def shapes_missing(scene) -> str:
+    """What step 3 needs before it can be built."""
+    if picks_missing(scene):
+        return picks_missing(scene)
+    state = scene.panorama_set
+    if not state.shapes:
+        return "Add a shape: the floor first, then what stands on it"
+    try:
+        conversion.shapes_from_state(state)
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
+def surfaces_missing(scene) -> str:
+    """What the light of step 5 needs of the steps before it."""
+    if calibration_missing(scene):
+        return calibration_missing(scene)
+    return "" if roles.real_objects(scene) else "Build shapes first, or give objects a role"
+
+
+def maps_missing(scene) -> str:
+    """What step 6 needs of step 5."""
+    if surfaces_missing(scene):
+        return surfaces_missing(scene)
+    return "" if scene.panorama_place.irradiance else "Prepare the light first"
+
+
+def camera_missing(scene) -> str:
+    """What a picture through the scene's camera needs."""
+    return maps_missing(scene) or ("" if scene.camera else "Add a camera")
+
+
+def next_step(scene) -> str:
+    """The next thing to do, in one line."""
+    state = scene.panorama_set
+    for number, missing in enumerate((image_missing(scene), picks_missing(scene)), 1):
+        if missing:
+            return f"Step {number}: {missing}"
+    if calibration_missing(scene) or state.calibration_is_old:
+        return "Step 2: Calibrate"
+    if not roles.real_objects(scene) or state.shapes_are_old:
+        return f"Step 3: {shapes_missing(scene) or 'Build the shapes'}"
+    if not new_objects(scene):
+        return "Step 4: Add new objects, such as a mirror ball"
+    if maps_missing(scene) or state.maps_are_old:
+        return "Step 5: Prepare the light"
+    return "Step 6: Render" if scene.camera else "Step 6: Add a camera"
+
+
+def new_objects(scene) -> list:
+    """The new meshes of the scene: what is to be put into the place."""
+    return [o for o in scene.objects if o.type == "MESH" and o.panorama_role == roles.SYNTHETIC]
+
+
+def selected_meshes(context) -> list:
+    """The selected meshes."""
+    return [o for o in context.selected_objects if o.type == "MESH"]
+
+
+def selection_missing(context) -> str:
+    """What an operator on the selected meshes needs."""
+    if context.mode != "OBJECT":
+        return "Only in Object Mode"
+    return "" if selected_meshes(context) else "Select mesh objects first"

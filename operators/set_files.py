@@ -1,0 +1,77 @@
+"""Operators that open a panorama, and read and write the set file."""
+
+import bpy
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from ..ibl_toolkit.panorama_set import read_set, write_set
+from . import conversion, progress, solving
+from .reporting import Reporting, possible
+
+
+class PANORAMA_OT_load_image(Reporting, ImportHelper, bpy.types.Operator):
+    """Open an HDR panorama (OpenEXR or Radiance .hdr, twice as wide as high). Picks and shapes stay"""
+
+    bl_idname = "panorama.load_image"
+    bl_label = "Open Panorama"
+
+    filter_glob: bpy.props.StringProperty(default="*.exr;*.hdr", options={"HIDDEN"})
+
+    def work(self, context):
+        """Check and load the file."""
+        state = context.scene.panorama_set
+        image = solving.load_panorama(self.filepath)
+        state.image, state.image_path = image, self.filepath
+        state.calibration_is_old = state.result.is_solved
+        show_in_image_editors(context, image)
+        return f"{image.name}: {image.size[0]} × {image.size[1]} pixels"
+
+
+class PANORAMA_OT_import_set(Reporting, ImportHelper, bpy.types.Operator):
+    """Read a panorama set (.json): image, picks and shapes. They replace those of this scene"""
+
+    bl_idname = "panorama.import_set"
+    bl_label = "Import Set"
+
+    filename_ext = ".json"
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+
+    def work(self, context):
+        """Read the file and its image, then replace the scene's set."""
+        panorama_set = read_set(self.filepath)
+        image = solving.load_panorama(panorama_set.image)
+        state = context.scene.panorama_set
+        conversion.state_from_set(state, panorama_set)
+        state.image = image
+        show_in_image_editors(context, image)
+        return f"{image.name} with {len(state.picks)} picks and {len(state.shapes)} shapes"
+
+
+class PANORAMA_OT_export_set(Reporting, ExportHelper, bpy.types.Operator):
+    """Write image, picks and shapes of this scene to a panorama set (.json), as the command line reads it"""
+
+    bl_idname = "panorama.export_set"
+    bl_label = "Export Set"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".json"
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context):
+        """A set needs an image."""
+        return possible(cls, progress.image_missing(context.scene))
+
+    def work(self, context):
+        """Write the file."""
+        write_set(conversion.set_from_state(context.scene.panorama_set), self.filepath)
+        return f"Wrote {self.filepath}"
+
+
+def show_in_image_editors(context, image):
+    """Show the panorama in the window's open Image Editors, where its points are picked."""
+    for area in context.screen.areas if context.screen else ():
+        if area.type == "IMAGE_EDITOR":
+            area.spaces.active.image = image
+
+
+classes = (PANORAMA_OT_load_image, PANORAMA_OT_import_set, PANORAMA_OT_export_set)

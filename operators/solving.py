@@ -1,0 +1,96 @@
+"""Calibration and reconstruction of a scene's panorama set: first everything is computed, then the scene
+changes.
+
+So a refusal leaves the scene as it was, and picture, origin and rebuilt shapes always move together.
+"""
+
+from ..cycles_integration import blender_images
+from ..cycles_integration.place import PIECE, create_place, update_pieces
+from ..ibl_toolkit.calibration import calibrate
+from ..ibl_toolkit.images import read_panorama
+from ..ibl_toolkit.panorama_set import PanoramaSet
+from ..ibl_toolkit.reconstruction import reconstruct
+from . import conversion
+
+RESULT_FIELDS = (
+    "camera_height",
+    "tilt_deg",
+    "residual_deg",
+    "uncertainty_tilt_deg",
+    "uncertainty_scale_percent",
+    "condition",
+)
+
+
+def load_panorama(path):
+    """Load an image that is fit to be a panorama -> bpy image. Raises ValueError or OSError naming file and
+    value."""
+    read_panorama(path)
+    try:
+        return blender_images.load_radiance(str(path))
+    except RuntimeError as error:
+        raise ValueError(f"{path}: Blender cannot load it: {error}") from error
+
+
+def calibrate_scene(scene):
+    """Calibrate, and take along what is built already -> Calibration."""
+    return _solve(scene, _built_names(scene))
+
+
+def build_scene(scene):
+    """Calibrate and (re)build all shapes -> Calibration."""
+    if not scene.panorama_set.shapes:
+        raise ValueError("no shapes: add one first")
+    return _solve(scene, None)
+
+
+def follow_camera_height(scene):
+    """Scale the place with the camera height; what is wrong with it is kept for the panel to show."""
+    state = scene.panorama_set
+    if not state.result.is_solved:
+        return
+    try:
+        calibrate_scene(scene)
+    except (ValueError, OSError) as error:
+        state.problem, state.calibration_is_old = str(error), True
+
+
+def _solve(scene, names):
+    state = scene.panorama_set
+    if not state.image_path:
+        raise ValueError("no panorama: open an image first")
+    image = state.image or load_panorama(conversion.image_path(state))
+    calibration = calibrate(conversion.picks_from_state(state), tuple(image.size))
+    shapes = conversion.shapes_from_state(state, names)
+    panorama_set = PanoramaSet(conversion.image_path(state), None, shapes)
+    pieces = reconstruct(panorama_set, calibration, image.size[0])
+    state.image = image
+    place = create_place(scene, str(panorama_set.image), calibration)
+    update_pieces(place, pieces)
+    _note_calibration(state, calibration)
+    _note_pieces(state, pieces)
+    state.shapes_are_old = names is not None and state.shapes_are_old
+    return calibration
+
+
+def _built_names(scene):
+    surfaces = scene.panorama_place.surfaces
+    return {o[PIECE] for o in surfaces.all_objects if PIECE in o} if surfaces else set()
+
+
+def _note_calibration(state, calibration):
+    for field in RESULT_FIELDS:
+        setattr(state.result, field, getattr(calibration, field))
+    state.result.warnings = "\n".join(calibration.warnings)
+    state.result.is_solved = True
+    state.problem, state.calibration_is_old, state.maps_are_old = "", False, True
+
+
+def _note_pieces(state, pieces):
+    built = {piece.name: piece for piece in pieces}
+    for shape in state.shapes:
+        piece = built.get(shape.name)
+        shape.is_built = piece is not None
+        if piece is not None:
+            shape.size, shape.residual = piece.size_m, piece.residual_m
+            shape.warnings = "\n".join(piece.warnings)

@@ -1,0 +1,48 @@
+"""The Image Editor's sidebar tab "Panorama": points are set to where its 2D cursor is."""
+
+import bpy
+
+from .lists import draw_picks, draw_shapes
+from .texts import paragraph
+
+
+class _InImageEditor:
+    bl_space_type, bl_region_type, bl_category = "IMAGE_EDITOR", "UI", "Panorama"
+
+
+class PANORAMA_PT_cursor(_InImageEditor, bpy.types.Panel):
+    """How points are picked."""
+
+    bl_label = "Panorama Cursor"
+
+    def draw(self, context):
+        """Where the cursor is, and how to move it."""
+        space, layout = context.space_data, self.layout
+        if space.ui_mode != "MASK":
+            paragraph(layout, context, "Mask mode shows the 2D cursor", "INFO")
+            layout.prop(space, "ui_mode", text="")
+        paragraph(layout, context, "Shift + right click places the cursor, then press a point's button")
+        layout.prop(space, "cursor_location", text="Cursor")
+
+
+class PANORAMA_PT_pick_points(_InImageEditor, bpy.types.Panel):
+    """The calibration's picks."""
+
+    bl_label = "Calibration Picks"
+
+    def draw(self, context):
+        """The list, with buttons for points."""
+        draw_picks(self.layout, context.scene.panorama_set, from_cursor=True)
+
+
+class PANORAMA_PT_shape_points(_InImageEditor, bpy.types.Panel):
+    """The shapes' points."""
+
+    bl_label = "Shapes"
+
+    def draw(self, context):
+        """The list, with buttons for points."""
+        draw_shapes(self.layout, context, context.scene.panorama_set, from_cursor=True)
+
+
+classes = (PANORAMA_PT_cursor, PANORAMA_PT_pick_points, PANORAMA_PT_shape_points)
