@@ -14,7 +14,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import OpenEXR
-from mathutils import Euler
+from mathutils import Euler, Matrix
 
 from .place import Place
 
@@ -56,13 +56,18 @@ def temporary_scene(place: Place, width: int, samples: int):
 
 def panorama_camera(place: Place) -> bpy.types.Object:
     """A new equirectangular camera at the place's origin, whose image lies in the panorama's frame."""
+    return new_panorama_camera(place.origin.matrix_world)
+
+
+def new_panorama_camera(world_from_panorama: Matrix) -> bpy.types.Object:
+    """A new equirectangular camera at the origin of a frame (4, 4)."""
     data = bpy.data.cameras.new("Panorama Camera")
     data.type = "PANO"
     panoramic = data if hasattr(data, "panorama_type") else data.cycles  # moved to the camera in Blender 5.0
     panoramic.panorama_type = "EQUIRECTANGULAR"
     data.clip_start, data.clip_end = 1e-3, 1e6
     camera = bpy.data.objects.new(data.name, data)
-    camera.matrix_world = place.origin.matrix_world @ EQUIRECTANGULAR_FROM_CAMERA
+    camera.matrix_world = world_from_panorama @ EQUIRECTANGULAR_FROM_CAMERA
     return camera
 
 

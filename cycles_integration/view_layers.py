@@ -18,7 +18,7 @@ BACKPLATE_SAMPLES, MASK_SAMPLES = 16, 16
 
 def add_objects(scene, place, *, as_catchers: bool, with_environment: bool) -> bpy.types.ViewLayer:
     """The new objects in the place, whose surfaces are shadow catchers or plainly rendered."""
-    layer = _layer(scene, OBJECTS)
+    layer = _layer(scene, place, OBJECTS)
     layer_collection(layer, place.surfaces).exclude = as_catchers
     layer_collection(layer, place.lights).exclude = not with_environment
     place.catcher.hide_render = not as_catchers
@@ -44,7 +44,7 @@ def add_without(scene, place) -> bpy.types.ViewLayer:
 
 def add_mask(scene, place) -> bpy.types.ViewLayer:
     """The new objects' coverage: the real surfaces cut holes."""
-    layer = _layer(scene, MASK)
+    layer = _layer(scene, place, MASK)
     for collection in (place.support, place.environment):  # the flag does not reach child collections
         layer_collection(layer, collection).holdout = True
     layer.material_override = materials.black_material()
@@ -75,14 +75,16 @@ def layer_collection(layer, collection) -> bpy.types.LayerCollection:
 
 
 def _real_only(scene, place, name):
-    layer = _layer(scene, name)
+    layer = _layer(scene, place, name)
     for child in layer.layer_collection.children:
-        child.exclude = child.collection != place.collection
+        if child.collection != place.collection:
+            child.exclude = True
     layer_collection(layer, place.catchers).exclude = True  # a second copy of every surface, in the same spot
     return layer
 
 
-def _layer(scene, name):
+def _layer(scene, place, name):
     layer = scene.view_layers.new(name)
     layer.cycles.use_denoising = name in (OBJECTS, WITHOUT)
+    layer_collection(layer, place.catcher.users_collection[0]).exclude = name != OBJECTS
     return layer

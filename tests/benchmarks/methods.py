@@ -1,0 +1,143 @@
+"""The render methods against the truth: two closed rooms, four methods, with and without extracted lights.
+
+Writes docs/charts/methods.png (truth, each method, and five times its error) and docs/charts/methods.json.
+The truth is rendered once and kept in out/bench/.
+"""
+
+import json
+import pathlib
+import time
+
+import bpy
+import matplotlib
+import numpy as np
+
+import expanded_panoramas
+from expanded_panoramas.cycles_integration.methods import CATCHER, DIFFERENCE, DIRECTIONAL, SINGLE
+from expanded_panoramas.cycles_integration.rendering import Picture
+from expanded_panoramas.ibl_toolkit import metrics
+from expanded_panoramas.sample_scenes import closed_room_truth as room
+from expanded_panoramas.sample_scenes.closed_room import LARGE_LAMPS, SMALL_LAMPS
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CHARTS, CACHE = ROOT / "docs" / "charts", ROOT / "out" / "bench"
+PANORAMA_WIDTH, PANORAMA_SAMPLES = 1024, 128
+WIDTH, HEIGHT, SAMPLES = 480, 270, 64
+TRUTH_SAMPLES = 384
+RUNS = [
+    (DIRECTIONAL, None),
+    (SINGLE, 0),
+    (SINGLE, None),
+    (DIFFERENCE, 0),
+    (DIFFERENCE, None),
+    (CATCHER, 0),
+    (CATCHER, None),
+]
+
+
+def main():
+    """Measure both rooms and write the sheet and the figures."""
+    CACHE.mkdir(parents=True, exist_ok=True)
+    rows, pictures = [], {}
+    for lamps in (LARGE_LAMPS, SMALL_LAMPS):
+        fresh_file()
+        panorama = cached_panorama(lamps)
+        truth = cached_truth(lamps)
+        pictures[lamps, "truth"] = truth.with_objects
+        empty = photograph(panorama, lamps)
+        for method, most_lights in RUNS:
+            row, picture = measure(lamps, panorama, truth, empty, method, most_lights)
+            rows.append(row)
+            print(row)
+            if (method, most_lights) in ((DIRECTIONAL, None), (CATCHER, 0), (CATCHER, None)):
+                pictures[lamps, label(method, most_lights)] = picture
+    sheet(pictures)
+    document = {"samples": SAMPLES, "size": [WIDTH, HEIGHT], "truth_samples": TRUTH_SAMPLES, "rows": rows}
+    (CHARTS / "methods.json").write_text(json.dumps(document, indent=1) + "\n")
+
+
+def measure(lamps, panorama, truth, empty, method, most_lights):
+    """One row of the table and its picture."""
+    fresh_file()
+    start = time.perf_counter()
+    scene, prepared = room.mixed_scene(panorama, most_lights)
+    ready = time.perf_counter()
+    picture = room.render_mixed(scene, CACHE / "picture.exr", Picture(WIDTH, HEIGHT, SAMPLES, 1, method))
+    done = time.perf_counter()
+    changed = metrics.changed_pixels(truth.with_objects, truth.without)
+    row = {
+        "lamps": lamps,
+        "method": method,
+        "lights": prepared.light_count,
+        "psnr_changed_db": round(metrics.psnr(picture, truth.with_objects, changed), 2),
+        "psnr_unchanged_db": round(metrics.psnr(picture, empty, ~changed), 2),
+        "white_dots": int((metrics.white_dots(picture) & ~metrics.white_dots(truth.with_objects)).sum()),
+        "prepare_seconds": round(ready - start, 1),
+        "render_seconds": round(done - ready, 1),
+    }
+    return row, picture
+
+
+def photograph(panorama, lamps):
+    """The photograph projected on the rebuilt room, without objects: the catcher's backplate."""
+    path = CACHE / f"photograph_{lamps}_{WIDTH}.exr"
+    fresh_file()
+    scene, _ = room.mixed_scene(panorama, 0)
+    for thing in list(scene.objects):
+        thing.hide_render = thing.type == "MESH" and thing.panorama_role == "SYNTHETIC"
+    return room.render_mixed(scene, path, Picture(WIDTH, HEIGHT, 1, 1, CATCHER))
+
+
+def cached_panorama(lamps):
+    """The room's panorama, rendered unless it is there."""
+    path = CACHE / f"panorama_{lamps}_{PANORAMA_WIDTH}_{PANORAMA_SAMPLES}.exr"
+    if not path.exists():
+        room.capture_panorama(lamps, path, PANORAMA_WIDTH, PANORAMA_SAMPLES)
+    return path
+
+
+def cached_truth(lamps):
+    """The truth, rendered unless it is there."""
+    path = CACHE / f"truth_{lamps}_{WIDTH}_{TRUTH_SAMPLES}.npz"
+    if not path.exists():
+        truth = room.render_truth(lamps, WIDTH, HEIGHT, TRUTH_SAMPLES)
+        np.savez(path, with_objects=truth.with_objects, without=truth.without)
+    return room.Truth(**np.load(path))
+
+
+def fresh_file():
+    """An empty Blender file with the package registered."""
+    expanded_panoramas.unregister()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    expanded_panoramas.register()
+
+
+def label(method, most_lights):
+    """What the sheet calls a run."""
+    return method if method == DIRECTIONAL else f"{method}, {'no ' if most_lights == 0 else ''}lights"
+
+
+def sheet(pictures):
+    """Truth and pictures side by side, the error below."""
+    lamps = (LARGE_LAMPS, SMALL_LAMPS)
+    names = list(dict.fromkeys(name for _, name in pictures))
+    figure, axes = plt.subplots(4, len(names), figsize=(4 * len(names), 9.2), layout="constrained")
+    for row, which in enumerate(lamps):
+        truth = metrics.display_values(pictures[which, "truth"])
+        for column, name in enumerate(names):
+            shown = metrics.display_values(pictures[which, name])
+            axes[2 * row, column].imshow(shown)
+            axes[2 * row + 1, column].imshow(np.clip(5 * np.abs(shown - truth), 0, 1))
+            axes[2 * row, column].set_title(f"{which} lamps: {name}", fontsize=11)
+            axes[2 * row + 1, column].set_title("5 × difference to the truth", fontsize=9)
+    for axis in axes.flat:
+        axis.set_axis_off()
+    figure.savefig(CHARTS / "methods.png", dpi=80)
+
+
+if __name__ == "__main__":
+    expanded_panoramas.register()
+    main()
