@@ -19,7 +19,7 @@ class Appended:
     frame: int
 
     def camera(self, name: str | None = None) -> bpy.types.Object:
-        """Return the camera of this name, or the file's active one. Raises ValueError with those there are."""
+        """Return the camera of this name, or the active one. Raises ValueError with those there are."""
         found = self.active_camera if name is None else self.cameras.get(name)
         if found is None:
             there = ", ".join(self.cameras) or "none"

@@ -6,12 +6,14 @@ from .exr import write_exr
 from .png import exposure_for, write_png
 from .reading import DEFAULT_MAX_BYTES, read_panorama
 from .rgbd import RGBD, read_rgbd, write_rgbd
+from .size import panorama_size
 
 __all__ = [
     "DEFAULT_MAX_BYTES",
     "RGBD",
     "ImageError",
     "exposure_for",
+    "panorama_size",
     "read_panorama",
     "read_rgbd",
     "replacing",

@@ -5,6 +5,8 @@ import secrets
 from contextlib import contextmanager
 from pathlib import Path
 
+_unfinished = set()
+
 
 @contextmanager
 def replacing(path):
@@ -23,8 +25,16 @@ def replacing(path):
     path = Path(path)
     # Hidden and random: two runs with the same target don't write into each other's file.
     temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}.part{path.suffix}")
+    _unfinished.add(temporary)
     try:
         yield temporary
         os.replace(temporary, path)
     finally:
+        temporary.unlink(missing_ok=True)
+        _unfinished.discard(temporary)
+
+
+def discard_unfinished():
+    """Delete what `replacing` has not finished: for a process that ends without unwinding its stack."""
+    for temporary in tuple(_unfinished):
         temporary.unlink(missing_ok=True)

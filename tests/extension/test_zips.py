@@ -7,7 +7,7 @@ import build_zips
 import pytest
 
 SHIPPED = {
-    "LICENSE", "README.md", "__init__.py", "blender_manifest.toml", "cli.py",
+    "LICENSE", "README.md", "__init__.py", "blender_manifest.toml", "cli",
     "cycles_integration", "ibl_toolkit", "operators", "sample_scenes", "ui",
 }
 

@@ -1,0 +1,54 @@
+"""Values of options: what is accepted, and what is said about the rest."""
+
+import argparse
+import re
+
+_RANGE = re.compile(r"(-?\d+)(?:-(-?\d+))?(?:,(\d+))?")
+_MANY = 2**31 - 1
+_LAST_FRAME = 1_048_574  # of Blender
+
+
+def whole_number(least, most=_MANY):
+    """Return a parser of whole numbers from `least` to `most`.
+
+    >>> whole_number(1)("64")
+    64
+    """
+
+    def read(text):
+        if not re.fullmatch(r"[+-]?\d+", text) or not least <= int(text) <= most:
+            limit = f"at least {least}" if most == _MANY else f"{least} to {most}"
+            raise argparse.ArgumentTypeError(f"{text!r}: must be a whole number, {limit}")
+        return int(text)
+
+    return read
+
+
+def light_limit(text):
+    """The most lights that are taken out of the map: `auto` (None: as many as there are), `none` (0) or N.
+
+    >>> light_limit("auto"), light_limit("none"), light_limit("4")
+    (None, 0, 4)
+    """
+    if text == "auto":
+        return None
+    if text == "none":
+        return 0
+    if text.isascii() and text.isdigit():
+        return int(text)
+    raise argparse.ArgumentTypeError(f"{text!r}: must be auto, none or a number of lights")
+
+
+def frame_range(text):
+    """Frames `A`, `A-B` or `A-B,step` -> range.
+
+    >>> list(frame_range("1-10,4")), list(frame_range("7"))
+    ([1, 5, 9], [7])
+    """
+    found = _RANGE.fullmatch(text)
+    if found:
+        first, last, step = found[1], found[2] or found[1], found[3] or 1
+        frames = range(int(first), int(last) + 1, max(int(step), 1))
+        if frames and int(step) and max(map(abs, (frames[0], frames[-1]))) <= _LAST_FRAME:
+            return frames
+    raise argparse.ArgumentTypeError(f"{text!r}: must be A, A-B or A-B,step with A ≤ B and a step from 1")

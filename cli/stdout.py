@@ -1,0 +1,36 @@
+"""stdout is for results: what Blender and Cycles print there from their C code goes nowhere."""
+
+import ctypes
+import os
+import sys
+from contextlib import contextmanager
+
+_STDOUT = 1
+
+
+@contextmanager
+def kept_for_results():
+    """While the block runs, nothing reaches the process's stdout, from C or from Python."""
+    _flush()
+    kept = os.dup(_STDOUT)
+    silence()
+    try:
+        yield
+    finally:
+        _flush()
+        os.dup2(kept, _STDOUT)
+        os.close(kept)
+
+
+def silence():
+    """Send the process's stdout nowhere from here on."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, _STDOUT)
+    os.close(nowhere)
+
+
+def _flush():
+    """C has a buffer of its own, which would be written whenever it is full."""
+    sys.stdout.flush()
+    library = "ucrtbase" if sys.platform == "win32" else None
+    ctypes.CDLL(library).fflush(None)
