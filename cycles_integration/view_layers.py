@@ -79,12 +79,11 @@ def _real_only(scene, place, name):
     for child in layer.layer_collection.children:
         if child.collection != place.collection:
             child.exclude = True
-    layer_collection(layer, place.catchers).exclude = True  # a second copy of every surface, in the same spot
     return layer
 
 
 def _layer(scene, place, name):
     layer = scene.view_layers.new(name)
     layer.cycles.use_denoising = name in (OBJECTS, WITHOUT)
-    layer_collection(layer, place.catcher.users_collection[0]).exclude = name != OBJECTS
+    layer_collection(layer, place.catchers).exclude = name != OBJECTS  # they lie where the surfaces are
     return layer

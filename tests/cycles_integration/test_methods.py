@@ -1,0 +1,94 @@
+"""Each method shows exactly the photograph where nothing new is, and changes it where something is."""
+
+import numpy as np
+import panoramas
+import pytest
+
+from expanded_panoramas.sample_scenes import closed_room_truth
+from expanded_panoramas.sample_scenes.closed_room_truth import add_camera, add_objects
+
+SIZE = (64, 32)
+PICTURE = (48, 27)
+EXACT = 2e-5
+SINGLE_MEAN = 0.02  # relative: `single` is a noisy render
+
+
+@pytest.fixture
+def prepared(fresh_blend, tmp_path, monkeypatch):
+    from expanded_panoramas.cycles_integration import preparation
+
+    monkeypatch.setattr(preparation, "IRRADIANCE_SAMPLES", 64)
+    image = panoramas.smooth_panorama(tmp_path / "smooth.exr")
+    scene, _ = panoramas.room_place(fresh_blend, image)
+    fresh_blend.data.objects["floor"].panorama_reflectivity = 0.2
+    camera = add_camera(scene)
+    preparation.prepare(scene)
+    return scene, camera
+
+
+def render(scene, camera, path, **picture):
+    from expanded_panoramas.cycles_integration.rendering import Picture, render_picture
+
+    render_picture(scene, camera, Picture(*PICTURE, seed=1, **picture), path)
+    return closed_room_truth.read_picture(path)
+
+
+def photograph(scene, camera, path):
+    """The catcher's own backplate without objects."""
+    return render(scene, camera, path, method="catcher", samples=1)
+
+
+@pytest.mark.parametrize("method", ["catcher", "difference", "directional"])
+def test_without_objects_the_picture_is_the_photograph(prepared, tmp_path, method):
+    """With a glossy floor, too."""
+    scene, camera = prepared
+    picture = render(scene, camera, tmp_path / "picture.exr", method=method, samples=4)
+    assert np.abs(picture - photograph(scene, camera, tmp_path / "photograph.exr")).max() < EXACT
+
+
+def test_single_shows_the_photograph_on_average(prepared, tmp_path):
+    scene, camera = prepared
+    picture = render(scene, camera, tmp_path / "picture.exr", method="single", samples=64)
+    expected = photograph(scene, camera, tmp_path / "photograph.exr")
+    assert picture.mean() == pytest.approx(expected.mean(), rel=SINGLE_MEAN)
+
+
+@pytest.mark.parametrize("method", ["catcher", "single", "difference", "directional"])
+def test_objects_appear_and_darken_the_floor(prepared, tmp_path, method):
+    scene, camera = prepared
+    add_objects(scene)
+    picture = render(scene, camera, tmp_path / "picture.exr", method=method, samples=16)
+    expected = photograph_without_objects(scene, camera, tmp_path)
+    assert np.isfinite(picture).all()
+    change = (picture - expected).mean(axis=2)
+    assert (np.abs(change) > 0.1).mean() > 0.02
+    assert change[12:20, 20:32].min() < -0.05
+
+
+def photograph_without_objects(scene, camera, tmp_path):
+    for thing in scene.objects:
+        thing.hide_render = thing.name in ("mirror ball", "matte ball", "box")
+    return photograph(scene, camera, tmp_path / "photograph.exr")
+
+
+def test_the_whole_panorama_keeps_the_file_where_nothing_is_new(prepared, tmp_path):
+    from expanded_panoramas.cycles_integration import blender_images, rendering
+    from expanded_panoramas.cycles_integration.place import place_of
+
+    scene, _ = prepared
+    with rendering.panorama_camera(scene) as camera:
+        rendering.render_picture(scene, camera, rendering.Picture(*SIZE, samples=1), tmp_path / "whole.exr")
+    image = blender_images.array_from_image(place_of(scene).image)
+    assert np.array_equal(closed_room_truth.read_picture(tmp_path / "whole.exr"), image)
+
+
+def test_an_unknown_method_is_refused(prepared, tmp_path):
+    scene, camera = prepared
+    with pytest.raises(ValueError, match="expected catcher, single"):
+        render(scene, camera, tmp_path / "picture.exr", method="magic")
+
+
+def test_an_unprepared_place_is_refused(fresh_blend, tmp_path):
+    scene, _ = panoramas.room_place(fresh_blend, panoramas.smooth_panorama(tmp_path / "smooth.exr"))
+    with pytest.raises(ValueError, match="not prepared"):
+        render(scene, add_camera(scene), tmp_path / "picture.exr")
