@@ -204,16 +204,24 @@ def _dilated(mask, pixels):
 
 
 def _flat_parts(samples: _Samples, splits_left: int) -> list[_Samples]:
-    """Halve a region along its longest axis until a flat rectangle fits each part."""
+    """Halve a region, by its two main normals or else along its longest side, until each part fits a
+    rectangle."""
     centre, axes, lengths = _frame(samples)
     flat = samples.solid_angles @ (samples.normals @ axes[:, 2]) > FLATNESS * samples.solid_angles.sum()
     filled = samples.areas.sum() > FILLING * lengths[0] * lengths[1]
     if splits_left == 0 or (flat and filled and lengths[0] < WIDTH * np.linalg.norm(centre)):
         return [samples]
-    first = (samples.points - centre) @ axes[:, 0] < 0
+    first = (samples.points - centre) @ axes[:, 0] < 0 if flat else _nearer_first_normal(samples, axes[:, 2])
     if first.all() or not first.any():
         return [samples]
     return _flat_parts(samples[first], splits_left - 1) + _flat_parts(samples[~first], splits_left - 1)
+
+
+def _nearer_first_normal(samples: _Samples, mean_normal: np.ndarray) -> np.ndarray:
+    """Which samples (n,) belong to the one of the two most different normals."""
+    one = samples.normals[np.argmin(samples.normals @ mean_normal)]
+    other = samples.normals[np.argmin(samples.normals @ one)]
+    return samples.normals @ one > samples.normals @ other
 
 
 def _frame(samples: _Samples):
