@@ -5,7 +5,7 @@ import numpy as np
 from bpy_extras.io_utils import ExportHelper
 
 from ..cycles_integration import blender_images, maps
-from ..cycles_integration.place import place_of
+from ..cycles_integration.place import place_of, sort_objects
 from ..cycles_integration.preparation import prepare
 from ..ibl_toolkit.images import RGBD, write_rgbd
 from . import progress
@@ -41,7 +41,6 @@ class PANORAMA_OT_export_depth(Reporting, ExportHelper, bpy.types.Operator):
 
     bl_idname = "panorama.export_depth"
     bl_label = "Write RGB-D"
-    bl_options = {"REGISTER"}
 
     filename_ext = ".exr"
     filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
@@ -63,6 +62,7 @@ class PANORAMA_OT_export_depth(Reporting, ExportHelper, bpy.types.Operator):
         """Render and write."""
         place = place_of(context.scene)
         width = min(self.width, place.image.size[0]) // 2 * 2
+        sort_objects(context.scene, place)
         depth = maps.render_depth(context.scene, place, width)
         matrix = np.array(place.origin.matrix_world)
         image = np.ascontiguousarray(maps.shrink(blender_images.array_from_image(place.image), width))

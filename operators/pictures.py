@@ -31,7 +31,8 @@ class PANORAMA_OT_set_up_picture(_ThroughCamera, bpy.types.Operator):
     def work(self, context):
         """Set up without rendering."""
         picture = frame(context.scene)
-        set_up_picture(context.scene, context.scene.camera, picture)
+        with resolution_kept(context.scene):
+            set_up_picture(context.scene, context.scene.camera, picture)
         return f"F12 renders {picture.width} × {picture.height} by the method {picture.method}"
 
 
@@ -50,10 +51,11 @@ class PANORAMA_OT_render_frame(_ThroughCamera, bpy.types.Operator):
         scene = context.scene
         picture = frame(scene)
         if self.filepath:
-            with output_kept(scene):
+            with resolution_kept(scene), output_kept(scene):
                 render_picture(scene, scene.camera, picture, bpy.path.abspath(self.filepath))
             return f"Wrote {self.filepath}"
-        set_up_picture(scene, scene.camera, picture)
+        with resolution_kept(scene):
+            set_up_picture(scene, scene.camera, picture)
         bpy.ops.render.render("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
         return f"{picture.width} × {picture.height}, {picture.samples} samples, method {picture.method}"
 
@@ -85,26 +87,40 @@ class PANORAMA_OT_render_panorama(Reporting, ExportHelper, bpy.types.Operator):
         scene = context.scene
         own_camera, own_picture = scene.camera, frame(scene)
         width = self.width or place_of(scene).image.size[0]
-        with panorama_camera(scene) as camera, output_kept(scene):
-            render_picture(scene, camera, picture_of(scene, width, width // 2), self.filepath)
-        if own_camera is not None:
-            set_up_picture(scene, own_camera, own_picture)
-        else:
-            scene.render.resolution_x, scene.render.resolution_y = own_picture.width, own_picture.height
+        with resolution_kept(scene):
+            try:
+                with panorama_camera(scene) as camera, output_kept(scene):
+                    render_picture(scene, camera, picture_of(scene, width, width // 2), self.filepath)
+            finally:
+                scene.camera = own_camera
+            if own_camera is not None:
+                set_up_picture(scene, own_camera, own_picture)
         return f"Wrote {self.filepath}: {width} × {width // 2}"
 
 
 def frame(scene) -> Picture:
     """The picture in the scene's own resolution."""
     render = scene.render
-    share = render.resolution_percentage / 100
-    return picture_of(scene, round(render.resolution_x * share), round(render.resolution_y * share))
+    sides = (render.resolution_x, render.resolution_y)
+    return picture_of(scene, *(side * render.resolution_percentage // 100 for side in sides))
 
 
 def picture_of(scene, width, height) -> Picture:
     """The picture of some size by the scene's settings."""
     job = scene.panorama_set.job
     return Picture(width, height, job.samples, job.seed, job.method, job.denoise)
+
+
+@contextlib.contextmanager
+def resolution_kept(scene):
+    """Give the scene its resolution back, whose percentage the artist changes between test and final."""
+    names = ("resolution_x", "resolution_y", "resolution_percentage")
+    kept = [getattr(scene.render, name) for name in names]
+    try:
+        yield
+    finally:
+        for name, value in zip(names, kept, strict=True):
+            setattr(scene.render, name, value)
 
 
 @contextlib.contextmanager

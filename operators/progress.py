@@ -1,6 +1,9 @@
 """How far the work on a scene's panorama is: for each step what is missing, "" where nothing is."""
 
-from ..cycles_integration import roles
+from mathutils import Vector
+
+from ..cycles_integration import picture_coordinates, roles
+from ..cycles_integration.place import PIECE
 from . import conversion
 
 ORIENTING = ("RECTANGLE", "PARALLELS", "VERTICAL")
@@ -87,6 +90,50 @@ def next_step(scene) -> str:
 def new_objects(scene) -> list:
     """The new meshes of the scene: what is to be put into the place."""
     return [o for o in scene.objects if o.type == "MESH" and o.panorama_role == roles.SYNTHETIC]
+
+
+def own_lights(scene) -> list:
+    """The artist's own lights, which light new objects beside those of the place."""
+    ours = scene.panorama_place.lights
+    return [o for o in scene.objects if o.type == "LIGHT" and not (ours and o.name in ours.objects)]
+
+
+def around_origin(scene) -> str:
+    """Name of a new object within whose bounds the panorama was captured, as Blender's first cube is."""
+    if calibration_missing(scene):
+        return ""
+    origin = scene.panorama_place.origin.matrix_world.translation
+    return next((o.name for o in new_objects(scene) if _within_bounds(o, origin)), "")
+
+
+def _within_bounds(thing, point):
+    if not all(thing.dimensions):
+        return False
+    local = thing.matrix_world.inverted_safe() @ point
+    corners = [Vector(corner) for corner in thing.bound_box]
+    return all(min(c[i] for c in corners) < local[i] < max(c[i] for c in corners) for i in range(3))
+
+
+def surface_counts(scene) -> list[tuple[str, int]]:
+    """How many surfaces have each of the real roles."""
+    return [
+        (name, len(roles.with_role(scene, role))) for role, name, _ in roles.ROLES if role != roles.SYNTHETIC
+    ]
+
+
+def is_real(thing) -> bool:
+    """Whether an object stands for a real surface."""
+    return thing is not None and thing.type == "MESH" and thing.panorama_role != roles.SYNTHETIC
+
+
+def is_own_support(thing) -> bool:
+    """Whether an object is a support that no shape of the set describes."""
+    return is_real(thing) and thing.panorama_role == roles.SUPPORT and PIECE not in thing
+
+
+def keeps_picture(thing) -> bool:
+    """Whether a real surface keeps the part of the picture that it once had."""
+    return picture_coordinates.has_stored_positions(thing)
 
 
 def selected_meshes(context) -> list:

@@ -91,7 +91,7 @@ class PanoramaPoint(bpy.types.PropertyGroup):
 class PanoramaPick(bpy.types.PropertyGroup):
     """One thing in the image that tells about the orientation or the scale."""
 
-    kind: EnumProperty(name="Kind", items=PICK_KINDS)
+    kind: EnumProperty(name="Kind", description="What the points are", items=PICK_KINDS)
     plane: EnumProperty(
         name="Plane", description="Where the rectangle lies", items=PLANES, update=_picks_changed
     )

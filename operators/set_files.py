@@ -3,6 +3,7 @@
 import bpy
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
+from ..cycles_integration.objects_file import append_objects
 from ..ibl_toolkit.panorama_set import read_set, write_set
 from . import conversion, progress, solving
 from .reporting import Reporting, possible
@@ -67,6 +68,29 @@ class PANORAMA_OT_export_set(Reporting, ExportHelper, bpy.types.Operator):
         return f"Wrote {self.filepath}"
 
 
+class PANORAMA_OT_append_objects(Reporting, ImportHelper, bpy.types.Operator):
+    """Append objects, lights and cameras of a .blend file's first scene; what has no role there is new"""
+
+    bl_idname = "panorama.append_objects"
+    bl_label = "Append Objects"
+
+    filename_ext = ".blend"
+    filter_glob: bpy.props.StringProperty(default="*.blend", options={"HIDDEN"})
+
+    def invoke(self, context, event):
+        """Begin with the file that the set names."""
+        self.filepath = bpy.path.abspath(context.scene.panorama_set.objects_path)
+        return super().invoke(context, event)
+
+    def work(self, context):
+        """Append, remember the file, and look through its camera where the scene has none."""
+        scene = context.scene
+        appended = append_objects(scene, self.filepath)
+        scene.panorama_set.objects_path = self.filepath
+        scene.camera = scene.camera or appended.active_camera
+        return f"{len(appended.objects)} objects, {len(appended.cameras)} of them cameras"
+
+
 def show_in_image_editors(context, image):
     """Show the panorama in the window's open Image Editors, where its points are picked."""
     for area in context.screen.areas if context.screen else ():
@@ -74,4 +98,9 @@ def show_in_image_editors(context, image):
             area.spaces.active.image = image
 
 
-classes = (PANORAMA_OT_load_image, PANORAMA_OT_import_set, PANORAMA_OT_export_set)
+classes = (
+    PANORAMA_OT_load_image,
+    PANORAMA_OT_import_set,
+    PANORAMA_OT_export_set,
+    PANORAMA_OT_append_objects,
+)

@@ -18,10 +18,11 @@ class PANORAMA_PT_cursor(_InImageEditor, bpy.types.Panel):
     def draw(self, context):
         """Where the cursor is, and how to move it."""
         space, layout = context.space_data, self.layout
-        if space.ui_mode != "MASK":
-            paragraph(layout, context, "Mask mode shows the 2D cursor", "INFO")
-            layout.prop(space, "ui_mode", text="")
-        paragraph(layout, context, "Shift + right click places the cursor, then press a point's button")
+        if space.ui_mode != "MASK":  # elsewhere Blender neither draws the cursor nor lets it be placed
+            layout.prop_enum(space, "ui_mode", "MASK", text="Show 2D Cursor", icon="PIVOT_CURSOR")
+            return
+        text = "Shift + right click places the cursor; the button beside a point sets it there"
+        paragraph(layout, context, text)
         layout.prop(space, "cursor_location", text="Cursor")
 
 

@@ -77,6 +77,7 @@ def draw_shapes(layout, context, state, from_cursor=False):
     if not 0 <= state.active_shape < len(state.shapes):
         return
     shape = state.shapes[state.active_shape]
+    figure(layout, "Kind", shape.bl_rna.properties["kind"].enum_items[shape.kind].name)
     _draw_shape_fields(layout.column(), state, shape)
     _draw_points(layout, shape, "SHAPE", from_cursor)
     if shape.kind in ("walls", "box", "cylinder") and not shape.has_height:
@@ -92,7 +93,6 @@ def draw_shapes(layout, context, state, from_cursor=False):
 def _draw_shape_fields(column, state, shape):
     column.use_property_split = True
     column.use_property_decorate = False
-    column.prop(shape, "kind")
     column.prop(shape, "role")
     if shape.role == "SUPPORT":
         column.prop(shape, "reflectivity")

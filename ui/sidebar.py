@@ -4,9 +4,8 @@ from pathlib import Path
 
 import bpy
 
-from ..cycles_integration import roles
-from ..cycles_integration.picture_coordinates import has_stored_positions
 from ..operators import progress
+from ..operators.pictures import frame
 from .lists import draw_picks, draw_shapes
 from .texts import figure, paragraph
 
@@ -57,10 +56,10 @@ class PANORAMA_PT_image(_Step, bpy.types.Panel):
             size = f"{state.image.size[0]} × {state.image.size[1]}" if state.image else "not loaded"
             figure(self.layout, Path(state.image_path).name, size)
         column = self.layout.column(align=True)
-        column.operator("panorama.load_image", icon="FILE_FOLDER")
+        column.operator("panorama.load_image", text="Open Panorama...", icon="FILE_FOLDER")
         row = column.row(align=True)
-        row.operator("panorama.import_set", icon="IMPORT")
-        row.operator("panorama.export_set", icon="EXPORT")
+        row.operator("panorama.import_set", text="Import Set...", icon="IMPORT")
+        row.operator("panorama.export_set", text="Export Set...", icon="EXPORT")
 
 
 class PANORAMA_PT_calibration(_Step, bpy.types.Panel):
@@ -77,22 +76,26 @@ class PANORAMA_PT_calibration(_Step, bpy.types.Panel):
         scene, state = context.scene, context.scene.panorama_set
         column = self.layout.column()
         column.use_property_split, column.use_property_decorate = True, False
-        column.active = not any(pick.kind == "LENGTH" for pick in state.picks)
-        column.prop(state, "camera_height")
-        self.say(context, progress.picks_missing(scene))
-        self.say(context, state.problem, "ERROR")
+        by_length = any(pick.kind == "LENGTH" for pick in state.picks)
+        if not by_length:
+            column.prop(state, "camera_height")
+        missing = progress.picks_missing(scene)
+        self.say(context, missing)
+        if not missing:
+            self.say(context, state.problem, "ERROR")
         self.layout.operator("panorama.calibrate", icon="ORIENTATION_GIMBAL")
         if not state.result.is_solved:
             return
         if state.calibration_is_old:
             self.say(context, "The picks have changed: calibrate again", "FILE_REFRESH")
-        self.draw_result(context, state.result)
+        self.draw_result(context, state.result, by_length)
 
-    def draw_result(self, context, result):
+    def draw_result(self, context, result, by_length):
         """The figures, with one standard deviation for half a pixel of click error."""
         box = self.layout.box().column(align=True)
         figure(box, "Tilt", f"{result.tilt_deg:.2f}° ± {result.uncertainty_tilt_deg:.2f}°")
-        figure(box, "Camera height", f"{result.camera_height:.3f} m")
+        if by_length:
+            figure(box, "Camera height", f"{result.camera_height:.3f} m")
         figure(box, "Scale", f"± {result.uncertainty_scale_percent:.1f} %")
         figure(box, "Residual", f"{result.residual_deg:.3f}°")
         figure(box, "Condition", f"{result.condition:.1f} (1 is best)")
@@ -131,11 +134,9 @@ class PANORAMA_PT_shapes(_Step, bpy.types.Panel):
         built = [shape for shape in state.shapes if shape.is_built]
         if built:
             worst = max(built, key=lambda shape: shape.residual)
-            figure(
-                self.layout,
-                f"{len(built)} of {len(state.shapes)} built",
-                f"≤ {1000 * worst.residual:.1f} mm off",
-            )
+            box = self.layout.box().column(align=True)
+            figure(box, "Built", f"{len(built)} of {len(state.shapes)}")
+            figure(box, "Largest residual", f"{1000 * worst.residual:.1f} mm")
         if built and state.shapes_are_old:
             self.say(context, "The shapes have changed: build again", "FILE_REFRESH")
         for shape in built:
@@ -171,11 +172,17 @@ class PANORAMA_PT_objects(_Step, bpy.types.Panel):
         scene, layout = context.scene, self.layout
         self.say(context, progress.surfaces_missing(scene))
         figure(layout, "New objects", str(len(progress.new_objects(scene))))
-        for role, name in ((roles.SUPPORT, "Support surfaces"), (roles.ENVIRONMENT, "Environment surfaces")):
-            figure(layout, name, str(len(roles.with_role(scene, role))))
+        for name, count in progress.surface_counts(scene):
+            figure(layout, f"{name} surfaces", str(count))
+        if progress.own_lights(scene):
+            figure(layout, "Lights of your own", str(len(progress.own_lights(scene))))
+        around = progress.around_origin(scene)
+        if around:
+            self.say(context, f"{around} surrounds the point of capture: move or delete it", "ERROR")
         row = layout.row(align=True)
         row.operator("panorama.add_ball", text="Mirror Ball", icon="SHADING_RENDERED").kind = "MIRROR"
         row.operator("panorama.add_ball", text="Matte Ball", icon="SHADING_SOLID").kind = "MATTE"
+        layout.operator("panorama.append_objects", text="Append Objects...", icon="APPEND_BLEND")
         self.draw_selection(context)
 
     def draw_selection(self, context):
@@ -183,14 +190,17 @@ class PANORAMA_PT_objects(_Step, bpy.types.Panel):
         layout, thing = self.layout, context.active_object
         column = layout.column(align=True)
         column.label(text="Selected meshes are:")
-        for role, name, _ in roles.ROLES:
-            is_it = bool(thing and thing.type == "MESH" and thing.panorama_role == role)
-            column.operator("panorama.set_role", text=name, depress=is_it).role = role
+        for role in bpy.types.Object.bl_rna.properties["panorama_role"].enum_items:
+            is_it = bool(thing and thing.type == "MESH" and thing.panorama_role == role.identifier)
+            column.operator("panorama.set_role", text=role.name, depress=is_it).role = role.identifier
+        if progress.is_own_support(thing):
+            column = layout.column(align=True)
+            column.prop(thing, "panorama_reflectivity")
+            column.prop(thing, "panorama_roughness")
         column = layout.column(align=True)
-        if thing and thing.type == "MESH":
-            kept = "keeps its picture" if has_stored_positions(thing) else "shows what lies behind it"
-            if thing.panorama_role != roles.SYNTHETIC:
-                paragraph(column, context, f"{thing.name} {kept}")
+        if progress.is_real(thing):
+            kept = "keeps its picture" if progress.keeps_picture(thing) else "shows what lies behind it"
+            paragraph(column, context, f"{thing.name} {kept}")
         row = column.row(align=True)
         row.operator("panorama.store_coordinates", icon="PINNED")
         row.operator("panorama.clear_coordinates", icon="UNPINNED")
@@ -224,7 +234,7 @@ class PANORAMA_PT_light(_Step, bpy.types.Panel):
             figure(box, "Lights", f"{job.light_count} with {100 * job.light_share:.0f} % of the light")
             figure(box, "With depth", f"{100 * job.coverage:.0f} % of the sphere")
             figure(box, "Took", f"{job.seconds:.1f} s")
-        layout.operator("panorama.export_depth", icon="EXPORT")
+        layout.operator("panorama.export_depth", text="Write RGB-D...", icon="EXPORT")
 
 
 class PANORAMA_PT_render(_Step, bpy.types.Panel):
@@ -246,12 +256,14 @@ class PANORAMA_PT_render(_Step, bpy.types.Panel):
         for name in ("method", "samples", "seed", "denoise"):
             column.prop(scene.panorama_set.job, name)
         column.prop(scene, "camera")
+        picture = frame(scene)
+        figure(layout, "Picture", f"{picture.width} × {picture.height} pixels")
         layout.operator("panorama.add_camera", icon="CAMERA_DATA")
         self.say(context, progress.camera_missing(scene))
         column = layout.column(align=True)
         column.operator("panorama.render_frame", icon="RENDER_STILL")
         column.operator("panorama.set_up_picture", icon="NODE_COMPOSITING")
-        column.operator("panorama.render_panorama", icon="WORLD")
+        column.operator("panorama.render_panorama", text="Render Panorama...", icon="WORLD")
 
 
 classes = (

@@ -58,7 +58,7 @@ def test_from_set_to_pictures(fresh_blend, tmp_path, quick):
     whole = OpenEXR.File(str(tmp_path / "whole.exr"), separate_channels=True).channels()
     assert whole["G"].pixels.shape == (32, 64)
     assert scene.camera == camera
-    assert (scene.render.resolution_x, scene.render.resolution_y) == (32, 18)
+    assert (scene.render.resolution_x, scene.render.resolution_percentage) == (64, 50)
     bpy.ops.panorama.render_frame()  # to the Render Result
     bpy.ops.panorama.set_up_picture()
 
@@ -71,6 +71,36 @@ def test_depth_is_that_of_the_room(fresh_blend, tmp_path):
     assert found.depth.shape == (32, 64)
     assert found.camera_height == pytest.approx(room.CAMERA_HEIGHT)
     assert found.depth[-1].mean() == pytest.approx(room.CAMERA_HEIGHT, rel=0.01)  # straight down: the floor
+
+
+def test_objects_of_another_file(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    mesh, camera = bpy.data.meshes.new("vase"), bpy.data.cameras.new("eye")
+    for thing in (bpy.data.objects.new("vase", mesh), bpy.data.objects.new("eye", camera)):
+        bpy.context.scene.collection.objects.link(thing)
+    bpy.context.scene.camera = bpy.data.objects["eye"]
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "objects.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    state = built(bpy, tmp_path)
+    bpy.ops.panorama.append_objects(filepath=str(tmp_path / "objects.blend"))
+    assert bpy.data.objects["vase"].panorama_role == "SYNTHETIC"
+    assert bpy.context.scene.camera.name == "eye"
+    assert state.objects_path == str(tmp_path / "objects.blend")
+    with pytest.raises(RuntimeError, match="room.json"):
+        bpy.ops.panorama.append_objects(filepath=str(tmp_path / "room.json"))
+    assert state.objects_path == str(tmp_path / "objects.blend")
+
+
+def test_own_support_is_in_the_depth(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    calibrated(bpy, tmp_path)
+    mesh = bpy.data.meshes.new("ground")
+    mesh.from_pydata([(-9, -9, 0.5), (9, -9, 0.5), (9, 9, 0.5), (-9, 9, 0.5)], [], [(0, 1, 2, 3)])
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("ground", mesh))
+    select(bpy, "ground")
+    bpy.ops.panorama.set_role(role="SUPPORT")
+    bpy.ops.panorama.export_depth(filepath=str(tmp_path / "depth.exr"), width=64)
+    assert read_rgbd(tmp_path / "depth.exr").depth[-1].mean() == pytest.approx(1.0, rel=0.01)
 
 
 def test_camera_height_moves_picture_origin_and_shapes_together(fresh_blend, tmp_path):

@@ -22,6 +22,10 @@ class Layout:
         assert name in owner.bl_rna.properties or hasattr(owner, name), name
         self._check_icon(icon)
 
+    def prop_enum(self, owner, name, value, text="", icon="NONE"):
+        assert value in owner.bl_rna.properties[name].enum_items
+        self._check_icon(icon)
+
     def prop_search(self, owner, name, within, search):
         assert hasattr(owner, name)
         assert hasattr(within, search)
