@@ -19,7 +19,7 @@ from . import equirectangular
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Rec. 709 weights of linear R, G, B."""
-THRESHOLD = 6.0
+THRESHOLD = 4.0
 """A pixel is bright above this multiple of the map's mean luminance over the sphere."""
 LEAST_SHARE = 0.002
 """Regions with less than this share of the map's power stay in the map."""

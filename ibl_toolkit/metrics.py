@@ -51,6 +51,12 @@ def changed_pixels(with_objects: np.ndarray, without: np.ndarray) -> np.ndarray:
     return cv2.morphologyEx(differs.astype(np.uint8), cv2.MORPH_OPEN, np.ones((2, 2), np.uint8)).astype(bool)
 
 
+def unchanged_pixels(with_objects: np.ndarray, without: np.ndarray) -> np.ndarray:
+    """Return where (H, W) objects change nothing visible, one pixel away from what they change."""
+    changed = changed_pixels(with_objects, without).astype(np.uint8)
+    return cv2.dilate(changed, np.ones((3, 3), np.uint8)) == 0
+
+
 def white_dots(image: np.ndarray) -> np.ndarray:
     """Return where (H, W) a pixel stands more than ten times above its eight neighbours.
 

@@ -12,7 +12,7 @@ import numpy as np
 import OpenEXR
 from mathutils import Matrix, Vector
 
-from ..cycles_integration import capture, place, preparation, rendering
+from ..cycles_integration import capture, place, preparation, rendering, roles
 from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import read_panorama, write_exr
 from ..ibl_toolkit.reconstruction import reconstruct
@@ -118,6 +118,13 @@ def add_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
             scene, "box", (1.3, -0.2), 0.3, 0.5, _material("green", "ShaderNodeBsdfDiffuse", (0.2, 0.5, 0.25))
         ),
     ]
+
+
+def hide_objects(scene: bpy.types.Scene):
+    """Leave the new objects out of the renders to come."""
+    for thing in list(scene.objects):
+        if thing.type == "MESH" and thing.panorama_role == roles.SYNTHETIC:
+            thing.hide_render = True
 
 
 def add_camera(scene: bpy.types.Scene) -> bpy.types.Object:

@@ -12,7 +12,7 @@ import bpy
 import matplotlib
 import numpy as np
 
-import expanded_panoramas
+from expanded_panoramas import cycles_integration
 from expanded_panoramas.cycles_integration.methods import CATCHER, DIFFERENCE, DIRECTIONAL, SINGLE
 from expanded_panoramas.cycles_integration.rendering import Picture
 from expanded_panoramas.ibl_toolkit import metrics
@@ -27,15 +27,17 @@ CHARTS, CACHE = ROOT / "docs" / "charts", ROOT / "out" / "bench"
 PANORAMA_WIDTH, PANORAMA_SAMPLES = 1024, 128
 WIDTH, HEIGHT, SAMPLES = 480, 270, 64
 TRUTH_SAMPLES = 384
-RUNS = [
-    (DIRECTIONAL, None),
-    (SINGLE, 0),
-    (SINGLE, None),
-    (DIFFERENCE, 0),
-    (DIFFERENCE, None),
-    (CATCHER, 0),
-    (CATCHER, None),
-]
+RUNS = (  # method, most lights, denoised
+    (DIRECTIONAL, None, False),
+    (SINGLE, 0, False),
+    (SINGLE, None, False),
+    (DIFFERENCE, 0, False),
+    (DIFFERENCE, None, False),
+    (CATCHER, 0, False),
+    (CATCHER, None, False),
+    (CATCHER, None, True),
+)
+SHOWN = (RUNS[0], RUNS[5], RUNS[6])
 
 
 def main():
@@ -48,32 +50,37 @@ def main():
         truth = cached_truth(lamps)
         pictures[lamps, "truth"] = truth.with_objects
         empty = photograph(panorama, lamps)
-        for method, most_lights in RUNS:
-            row, picture = measure(lamps, panorama, truth, empty, method, most_lights)
+        for run in RUNS:
+            row, picture = measure(lamps, panorama, truth, empty, run)
             rows.append(row)
             print(row)
-            if (method, most_lights) in ((DIRECTIONAL, None), (CATCHER, 0), (CATCHER, None)):
-                pictures[lamps, label(method, most_lights)] = picture
+            if run in SHOWN:
+                pictures[lamps, label(run)] = picture
     sheet(pictures)
     document = {"samples": SAMPLES, "size": [WIDTH, HEIGHT], "truth_samples": TRUTH_SAMPLES, "rows": rows}
     (CHARTS / "methods.json").write_text(json.dumps(document, indent=1) + "\n")
 
 
-def measure(lamps, panorama, truth, empty, method, most_lights):
+def measure(lamps, panorama, truth, empty, run):
     """One row of the table and its picture."""
+    method, most_lights, denoise = run
     fresh_file()
     start = time.perf_counter()
     scene, prepared = room.mixed_scene(panorama, most_lights)
     ready = time.perf_counter()
-    picture = room.render_mixed(scene, CACHE / "picture.exr", Picture(WIDTH, HEIGHT, SAMPLES, 1, method))
+    picture = room.render_mixed(
+        scene, CACHE / "picture.exr", Picture(WIDTH, HEIGHT, SAMPLES, 1, method, denoise)
+    )
     done = time.perf_counter()
     changed = metrics.changed_pixels(truth.with_objects, truth.without)
+    unchanged = metrics.unchanged_pixels(truth.with_objects, truth.without)
     row = {
         "lamps": lamps,
         "method": method,
         "lights": prepared.light_count,
+        "denoised": denoise,
         "psnr_changed_db": round(metrics.psnr(picture, truth.with_objects, changed), 2),
-        "psnr_unchanged_db": round(metrics.psnr(picture, empty, ~changed), 2),
+        "psnr_unchanged_db": round(metrics.psnr(picture, empty, unchanged), 2),
         "white_dots": int((metrics.white_dots(picture) & ~metrics.white_dots(truth.with_objects)).sum()),
         "prepare_seconds": round(ready - start, 1),
         "render_seconds": round(done - ready, 1),
@@ -86,8 +93,7 @@ def photograph(panorama, lamps):
     path = CACHE / f"photograph_{lamps}_{WIDTH}.exr"
     fresh_file()
     scene, _ = room.mixed_scene(panorama, 0)
-    for thing in list(scene.objects):
-        thing.hide_render = thing.type == "MESH" and thing.panorama_role == "SYNTHETIC"
+    room.hide_objects(scene)
     return room.render_mixed(scene, path, Picture(WIDTH, HEIGHT, 1, 1, CATCHER))
 
 
@@ -110,13 +116,14 @@ def cached_truth(lamps):
 
 def fresh_file():
     """An empty Blender file with the package registered."""
-    expanded_panoramas.unregister()
+    cycles_integration.unregister()
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    expanded_panoramas.register()
+    cycles_integration.register()
 
 
-def label(method, most_lights):
+def label(run):
     """What the sheet calls a run."""
+    method, most_lights, _ = run
     return method if method == DIRECTIONAL else f"{method}, {'no ' if most_lights == 0 else ''}lights"
 
 
@@ -139,5 +146,5 @@ def sheet(pictures):
 
 
 if __name__ == "__main__":
-    expanded_panoramas.register()
+    cycles_integration.register()
     main()

@@ -5,7 +5,7 @@ import panoramas
 import pytest
 
 from expanded_panoramas.sample_scenes import closed_room_truth
-from expanded_panoramas.sample_scenes.closed_room_truth import add_camera, add_objects
+from expanded_panoramas.sample_scenes.closed_room_truth import add_camera, add_objects, hide_objects
 
 SIZE = (64, 32)
 PICTURE = (48, 27)
@@ -66,8 +66,7 @@ def test_objects_appear_and_darken_the_floor(prepared, tmp_path, method):
 
 
 def photograph_without_objects(scene, camera, tmp_path):
-    for thing in scene.objects:
-        thing.hide_render = thing.name in ("mirror ball", "matte ball", "box")
+    hide_objects(scene)
     return photograph(scene, camera, tmp_path / "photograph.exr")
 
 

@@ -1,0 +1,49 @@
+"""The whole way on the closed room, small: photographed, calibrated, rebuilt, filled, and held against the
+truth.
+
+`tests/benchmarks/methods.py` does it in full size; these bounds are what the small size allows.
+"""
+
+import pytest
+
+from expanded_panoramas.ibl_toolkit import metrics
+from expanded_panoramas.sample_scenes.closed_room import LARGE_LAMPS, SMALL_LAMPS
+
+WIDTH, HEIGHT, SAMPLES = 128, 72, 64
+UNCHANGED_DB = 45.0
+
+
+@pytest.mark.parametrize(
+    ("lamps", "changed_db", "above_directional_db"), [(LARGE_LAMPS, 31.0, 11.0), (SMALL_LAMPS, 26.0, 5.0)]
+)
+def test_the_default_method_comes_near_the_truth(
+    fresh_blend, tmp_path, monkeypatch, lamps, changed_db, above_directional_db
+):
+    from expanded_panoramas.cycles_integration import preparation
+    from expanded_panoramas.cycles_integration.rendering import Picture
+    from expanded_panoramas.sample_scenes import closed_room_truth as room
+
+    monkeypatch.setattr(preparation, "IRRADIANCE_WIDTH", 192)
+    panorama = tmp_path / "room.exr"
+    room.capture_panorama(lamps, panorama, 768, 8)
+    truth = room.render_truth(lamps, WIDTH, HEIGHT, 96)
+    scene, prepared = room.mixed_scene(panorama)
+    assert prepared.light_count >= 3
+
+    def picture(**settings):
+        return room.render_mixed(scene, tmp_path / "picture.exr", Picture(WIDTH, HEIGHT, seed=1, **settings))
+
+    composite = picture(samples=SAMPLES)
+    directional = picture(samples=SAMPLES, method="directional")
+    room.hide_objects(scene)
+    photograph = picture(samples=1)
+
+    changed = metrics.changed_pixels(truth.with_objects, truth.without)
+    error = metrics.psnr(composite, truth.with_objects, changed)
+    assert error > changed_db
+    assert error > metrics.psnr(directional, truth.with_objects, changed) + above_directional_db
+    assert (
+        metrics.psnr(composite, photograph, metrics.unchanged_pixels(truth.with_objects, truth.without))
+        > UNCHANGED_DB
+    )
+    assert not (metrics.white_dots(composite) & ~metrics.white_dots(truth.with_objects)).any()
