@@ -43,7 +43,9 @@ class PANORAMA_OT_build(Reporting, bpy.types.Operator):
         for shape in context.scene.panorama_set.shapes:
             for warning in shape.warnings.splitlines():
                 self.report({"WARNING"}, f"{shape.name}: {warning}")
-        return f"Built {len(context.scene.panorama_set.shapes)} shapes"
+        kept = len(solving.kept_pieces(context.scene.panorama_place))
+        stayed = f"; {kept} that keep their picture stay as they are" if kept else ""
+        return f"Built {len(context.scene.panorama_set.shapes)} shapes{stayed}"
 
 
 class PANORAMA_OT_set_role(Reporting, bpy.types.Operator):

@@ -5,6 +5,7 @@ So a refusal leaves the scene as it was, and picture, origin and rebuilt shapes 
 """
 
 from ..cycles_integration import blender_images
+from ..cycles_integration.picture_coordinates import has_stored_positions
 from ..cycles_integration.place import PIECE, create_place, update_pieces
 from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import read_panorama
@@ -59,18 +60,48 @@ def _solve(scene, names):
     state = scene.panorama_set
     if not state.image_path:
         raise ValueError("no panorama: open an image first")
-    image = state.image or load_panorama(conversion.image_path(state))
+    there = state.image is not None and state.image.size[0]  # its file may be gone since
+    image = state.image if there else load_panorama(conversion.image_path(state))
     calibration = calibrate(conversion.picks_from_state(state), tuple(image.size))
     shapes = conversion.shapes_from_state(state, names)
     panorama_set = PanoramaSet(conversion.image_path(state), None, shapes)
     pieces = reconstruct(panorama_set, calibration, image.size[0])
     state.image = image
     place = create_place(scene, str(panorama_set.image), calibration)
-    update_pieces(place, pieces)
+    _update_pieces(place, pieces)
     _note_calibration(state, calibration)
     _note_pieces(state, pieces)
     state.shapes_are_old = names is not None and state.shapes_are_old
     return calibration
+
+
+def kept_pieces(place):
+    """The built pieces that keep their picture: an artist has made something of these, so they stay as they
+    are."""
+    surfaces = place.surfaces.all_objects if place.surfaces else ()
+    return [thing for thing in surfaces if PIECE in thing and has_stored_positions(thing)]
+
+
+def _update_pieces(place, pieces):
+    """Build the pieces anew, but for those that are kept; a duplicate is the artist's own from now on."""
+    _release_duplicates(place)
+    kept = {thing: thing[PIECE] for thing in kept_pieces(place)}
+    for thing in kept:
+        del thing[PIECE]
+    others = {thing[PIECE] for thing in place.surfaces.all_objects if PIECE in thing}
+    skipped = set(kept.values()) - others
+    update_pieces(place, [piece for piece in pieces if piece.name not in skipped])
+    for thing, name in kept.items():
+        thing[PIECE] = name
+
+
+def _release_duplicates(place):
+    """Of several objects with live pictures that call themselves one piece, the one with its name is it."""
+    built = [o for o in place.surfaces.all_objects if PIECE in o and not has_stored_positions(o)]
+    owners = {}
+    for thing in sorted(built, key=lambda o: o.name != o[PIECE]):
+        if owners.setdefault(thing[PIECE], thing) != thing:
+            del thing[PIECE]
 
 
 def _built_names(scene):

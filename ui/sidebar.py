@@ -53,7 +53,8 @@ class PANORAMA_PT_image(_Step, bpy.types.Panel):
         """Open an image, or a whole set."""
         state = context.scene.panorama_set
         if state.image_path:
-            size = f"{state.image.size[0]} × {state.image.size[1]}" if state.image else "not loaded"
+            width, height = state.image.size if state.image else (0, 0)
+            size = f"{width} × {height}" if width else "not found"
             figure(self.layout, Path(state.image_path).name, size)
         column = self.layout.column(align=True)
         column.operator("panorama.load_image", text="Open Panorama...", icon="FILE_FOLDER")

@@ -114,6 +114,28 @@ def test_camera_height_moves_picture_origin_and_shapes_together(fresh_blend, tmp
     assert state.maps_are_old
 
 
+def test_what_keeps_its_picture_and_what_was_duplicated_is_not_rebuilt(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    state = built(bpy, tmp_path)
+    table, cabinet = bpy.data.objects["table"], bpy.data.objects["cabinet"]
+    select(bpy, "table")
+    bpy.ops.panorama.store_coordinates()
+    table.data.vertices[0].co.z = 7  # bent
+    copy = cabinet.copy()
+    copy.name, copy.location = "a cabinet", (9, 9, 9)  # sorts before its original
+    bpy.context.scene.panorama_place.surfaces.objects.link(copy)
+    before = [thing.matrix_world.copy() for thing in (table, cabinet)]
+    state.camera_height = 1.1 * room.CAMERA_HEIGHT
+    bpy.ops.panorama.build()
+    assert table.matrix_world == before[0]
+    assert table.data.vertices[0].co.z == 7
+    assert cabinet.scale.x == pytest.approx(1.1 * before[1].to_scale().x, rel=1e-4)
+    assert copy.location.x == 9
+    bpy.ops.panorama.clear_coordinates()
+    bpy.ops.panorama.build()  # the shape's own again
+    assert table.scale.x == pytest.approx(1.1 * before[0].to_scale().x, rel=1e-4)
+
+
 def test_a_camera_height_that_cannot_be_leaves_all_as_it_was(fresh_blend, tmp_path):
     bpy = fresh_blend
     state = built(bpy, tmp_path)

@@ -195,6 +195,16 @@ def test_another_image_asks_for_another_calibration(fresh_blend, tmp_path):
     assert bpy.context.scene.panorama_place.image.name == "other.exr"
 
 
+def test_an_image_that_is_gone_is_named(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    calibrated(bpy, tmp_path)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    (tmp_path / "room.exr").unlink()
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scene.blend"))
+    with pytest.raises(RuntimeError, match="room.exr"):
+        bpy.ops.panorama.calibrate()
+
+
 def test_uv_of_a_pole_that_must_not_be_divided(fresh_blend, tmp_path):
     bpy = fresh_blend
     built(bpy, tmp_path)
