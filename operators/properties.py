@@ -15,10 +15,10 @@ from bpy.props import (
     StringProperty,
 )
 
-from ..cycles_integration.methods import CATCHER, METHODS
 from ..cycles_integration.roles import ENVIRONMENT, ROLES, SUPPORT
 from ..ibl_toolkit.panorama_set import DEFAULT_ROUGHNESS
 from . import solving
+from .job_properties import PanoramaJob, PanoramaResult
 
 RECTANGLE, PARALLELS, VERTICAL, LENGTH = "RECTANGLE", "PARALLELS", "VERTICAL", "LENGTH"
 PICK_KINDS = (
@@ -47,11 +47,6 @@ SHAPE_KINDS = (
     ("cylinder", "Cylinder", "Its base as a circle, and a point of its upper edge, or a height"),
 )
 REAL_ROLES = tuple(role for role in ROLES if role[0] in (SUPPORT, ENVIRONMENT))
-LIGHTS = (
-    ("AUTO", "All Found", "Every bright lamp of the photograph becomes a light at its depth"),
-    ("NONE", "None", "The surfaces light as they show; small lamps then leave noise"),
-    ("LIMIT", "At Most", "Only so many lamps, the strongest, become lights"),
-)
 
 
 def _picks_changed(item, context):
@@ -162,57 +157,6 @@ class PanoramaShape(bpy.types.PropertyGroup):
     size: FloatVectorProperty(size=3)
     residual: FloatProperty()
     warnings: StringProperty()
-
-
-class PanoramaResult(bpy.types.PropertyGroup):
-    """What the last calibration found; uncertainties are one standard deviation for half a pixel of click
-    error."""
-
-    is_solved: BoolProperty()
-    camera_height: FloatProperty()
-    tilt_deg: FloatProperty()
-    residual_deg: FloatProperty()
-    uncertainty_tilt_deg: FloatProperty()
-    uncertainty_scale_percent: FloatProperty()
-    condition: FloatProperty()
-    warnings: StringProperty()
-
-
-class PanoramaJob(bpy.types.PropertyGroup):
-    """How maps and pictures are to be made, and what the last preparation spent and found."""
-
-    lights: EnumProperty(
-        name="Lamps", description="How many lamps of the photograph become lights", items=LIGHTS
-    )
-    most_lights: IntProperty(
-        name="Count",
-        description="At most so many lights, the strongest first",
-        min=1,
-        soft_max=100,
-        default=8,
-    )
-    method: EnumProperty(
-        name="Method",
-        description="How new objects are put into the photograph",
-        items=METHODS,
-        default=CATCHER,
-    )
-    samples: IntProperty(
-        name="Samples",
-        description="Paths per pixel: twice as many take twice the time and leave 0.7 of the noise",
-        min=1,
-        soft_max=4096,
-        default=64,
-    )
-    seed: IntProperty(name="Seed", description="Another number gives other noise", min=0)
-    denoise: BoolProperty(
-        name="Denoise",
-        description="Smooth the noise of new objects and shadows; fine texture on them suffers",
-    )
-    seconds: FloatProperty()
-    coverage: FloatProperty()
-    light_count: IntProperty()
-    light_share: FloatProperty()
 
 
 class PanoramaSetState(bpy.types.PropertyGroup):

@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import image_editor, lists, sidebar
+from . import image_editor, lists, picture_panels, place_panels
 
-PANELS = (lists, sidebar, image_editor)
+PANELS = (lists, place_panels, picture_panels, image_editor)
 
 
 def register():

@@ -64,9 +64,10 @@ class Properties:
 
 def draw_all(bpy):
     """Draw the sidebar; returns its texts by panel."""
-    from expanded_panoramas.ui import sidebar
+    from expanded_panoramas.ui import picture_panels, place_panels
 
-    return {cls.__name__: draw(bpy, cls) for cls in sidebar.classes}
+    classes = (*place_panels.classes, *picture_panels.classes)
+    return {cls.__name__: draw(bpy, cls) for cls in classes}
 
 
 def draw(bpy, cls, context=None):
