@@ -11,7 +11,6 @@ import sys
 
 from . import interruption, stdout
 from .messages import complain, one_line
-from .parser import parser
 from .progress import Progress
 
 _blender_command = None
@@ -19,21 +18,23 @@ _blender_command = None
 
 def main(argv=None):
     """Run one verb and return its exit status."""
-    arguments = parser().parse_args(argv)
+    argv = sys.argv[1:] if argv is None else argv
     for stream in (sys.stdout, sys.stderr):  # a terminal without ± or × shows ? there
         stream.reconfigure(errors="replace")
-    progress = Progress(None if arguments.quiet or not sys.stderr.isatty() else sys.stderr)
-    try:
-        with interruption.watched(f"panorama {arguments.verb}", progress), stdout.kept_for_results():
-            result, status = arguments.job(arguments, progress)
-    except KeyboardInterrupt:
-        complain(arguments.verb, interruption.LINE)
-        return interruption.STATUS
-    except (ValueError, OSError) as error:
-        complain(arguments.verb, one_line(error))
-        return 2
-    print(json.dumps(result, indent=2) if arguments.json else "\n".join(arguments.describe(result)))
-    return status
+    with interruption.watched(" ".join(["panorama", *argv[:1]])) as watch:
+        from .parser import parser  # takes a moment, in which Ctrl-C should end the run as at any other
+
+        arguments = parser().parse_args(argv)
+        progress = Progress(None if arguments.quiet or not sys.stderr.isatty() else sys.stderr)
+        watch.clear = progress.clear
+        try:
+            with stdout.kept_for_results():
+                result, status = arguments.job(arguments, progress)
+        except (ValueError, OSError) as error:
+            complain(arguments.verb, one_line(error))
+            return 2
+        print(json.dumps(result, indent=2) if arguments.json else "\n".join(arguments.describe(result)))
+        return status
 
 
 def _blender_main(argv):

@@ -1,5 +1,6 @@
 """Blender for a job: an empty file with the package registered, in a Python with bpy or in Blender itself."""
 
+import atexit
 from contextlib import contextmanager
 from importlib import import_module
 
@@ -21,7 +22,6 @@ def empty_scene(progress):
     # The user's add-ons stay as they are: read_factory_settings would take this one away while it runs.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     _register_once(bpy)
-    progress.blender_folder = bpy.app.tempdir
     with _reporting(bpy.app.handlers, progress):
         yield bpy.context.scene
 
@@ -29,32 +29,24 @@ def empty_scene(progress):
 def _register_once(bpy):
     if hasattr(bpy.types.Scene, "panorama_place"):
         return
-    for room in ROOMS:
-        if room != "cli":  # whose register makes the command known to a Blender
-            import_module(f"..{room}", __package__).register()
+    for name in ROOMS:
+        if name != "cli":  # whose register makes the command known to a Blender
+            room = import_module(f"..{name}", __package__)
+            room.register()
+            atexit.register(room.unregister)  # else bpy 4.5 hangs as it exits
 
 
 @contextmanager
 def _reporting(handlers, progress):
-    def begin(*_):
-        progress.rendering = True
-
-    def end(*_):
-        progress.rendering = False
-
-    def stats(text, *_):
+    def report(text, *_):
         progress.on_render_stats(text)
 
-    ours = {"render_init": begin, "render_stats": stats, "render_complete": end, "render_cancel": end}
-    for name, handler in ours.items():
-        getattr(handlers, name).append(handler)
+    handlers.render_stats.append(report)
     try:
         yield
     finally:
-        for name, handler in ours.items():
-            listed = getattr(handlers, name)
-            if handler in listed:  # loading a file drops them
-                listed.remove(handler)
+        if report in handlers.render_stats:  # loading a file drops it
+            handlers.render_stats.remove(report)
 
 
 @contextmanager

@@ -1,7 +1,8 @@
 """Ctrl-C: the run ends at once, also from within a render, and leaves nothing behind.
 
-Python acts on a signal between two of its own instructions; a render is one call that takes minutes. So the
-signal also wakes a thread, which lets Python unwind if it can, and otherwise cleans up and ends the process.
+Python acts on a signal between two of its own instructions, but a render is one call that takes minutes;
+and an exception in the midst of Blender's own Python leaves it broken. So the signal wakes a thread instead,
+which cleans up and ends the process.
 """
 
 import os
@@ -13,72 +14,73 @@ import tempfile
 import threading
 from contextlib import contextmanager
 
-from ..ibl_toolkit.images.atomic import discard_unfinished
-
 STATUS = 130
-LINE = "interrupted"
-GRACE = 1.0
-"""Time [s] that Python has to unwind where no render is under way."""
+
+
+class Watch:
+    """What is done as the process ends: one line with `label`, after `clear` has made room for it."""
+
+    def __init__(self, label):
+        self.label = label
+        self.clear = lambda: None
 
 
 @contextmanager
-def watched(label, progress):
-    """While the block runs, Ctrl-C raises KeyboardInterrupt in it, or ends the process with STATUS.
+def watched(label):
+    """While the block runs, Ctrl-C ends the process with STATUS; gives a Watch.
 
-    Temporary files of the block, Blender's included, lie in one folder that goes with it. In a thread, where
-    signals don't arrive, only that.
+    Temporary files of the block lie in one folder that goes with it. In another thread than the main one,
+    where signals don't arrive, only that.
     """
     before = tempfile.tempdir
     with tempfile.TemporaryDirectory(prefix="panorama_") as scratch:
         tempfile.tempdir = scratch
+        watch = Watch(label)
         try:
             if threading.current_thread() is threading.main_thread():
-                with _watcher(label, progress, scratch):
-                    yield
+                with _waking(lambda: _leave(watch, scratch)):
+                    yield watch
             else:
-                yield
+                yield watch
         finally:
             tempfile.tempdir = before
 
 
 @contextmanager
-def _watcher(label, progress, scratch):
-    wakes, wakened = socket.socketpair()
-    wakened.setblocking(False)
-    ended = threading.Event()
+def _waking(leave):
+    """While the block runs, SIGINT makes another thread call `leave`, whatever the main one is doing."""
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
 
-    def raise_if_python_can(_signal, _frame):
-        if not progress.rendering:  # else it would be raised in a handler, where Blender only prints it
-            raise KeyboardInterrupt
-
-    def watch():
-        if wakes.recv(1) != bytes([signal.SIGINT]):
-            return
-        if progress.rendering or not ended.wait(GRACE):
-            _leave(label, progress, scratch)
+    def wait():
+        while received := receiver.recv(1):  # the number of a signal; nothing when the sender is closed
+            if received[0] == signal.SIGINT:
+                leave()
 
     previous = signal.getsignal(signal.SIGINT)
-    signal.signal(signal.SIGINT, raise_if_python_can)
-    previous_fd = signal.set_wakeup_fd(wakened.fileno(), warn_on_full_buffer=False)
-    thread = threading.Thread(target=watch, name="Ctrl-C", daemon=True)
+    signal.signal(signal.SIGINT, lambda *_: None)
+    previous_fd = signal.set_wakeup_fd(sender.fileno(), warn_on_full_buffer=False)
+    thread = threading.Thread(target=wait, name="Ctrl-C", daemon=True)
     thread.start()
     try:
         yield
     finally:
-        ended.set()
         signal.set_wakeup_fd(previous_fd)
         signal.signal(signal.SIGINT, signal.SIG_DFL if previous is None else previous)
-        wakened.close()
+        sender.close()
         thread.join()
-        wakes.close()
+        receiver.close()
 
 
-def _leave(label, progress, scratch):
-    """End the process from outside of Blender, which would go on to the end of its render."""
-    progress.clear()
-    discard_unfinished()
+def _leave(watch, scratch):
+    watch.clear()
+    print(f"{watch.label}: interrupted", file=sys.stderr, flush=True)
+    # What is not imported has made nothing; to import it here could wait for an import of the main thread.
+    blender = sys.modules.get("_bpy")
+    if blender is not None:
+        shutil.rmtree(blender.app.tempdir, ignore_errors=True)
     shutil.rmtree(scratch, ignore_errors=True)
-    if progress.blender_folder:
-        shutil.rmtree(progress.blender_folder, ignore_errors=True)
-    print(f"{label}: {LINE}", file=sys.stderr, flush=True)
+    atomic = sys.modules.get(f"{__package__.rpartition('.')[0]}.ibl_toolkit.images.atomic")
+    if atomic is not None:
+        atomic.discard_unfinished()
     os._exit(STATUS)

@@ -18,16 +18,14 @@ class Progress:
     def __init__(self, stream=None):
         self.stream = stream
         self.seconds = {}
-        self.rendering = False
-        self.blender_folder = None
-        self._fraction = None
         self._shown = 0
 
     @contextmanager
     def step(self, name, samples=None):
         """Time the block as step `name`; `samples`: of all renders of the step together."""
         start = time.perf_counter()
-        self._fraction, self._done, self._last, self._expected = None, 0, (0, 0), samples
+        self._fraction, self._told = None, start
+        self._done, self._last, self._expected = 0, (0, 0), samples
         ended = threading.Event()
         thread = threading.Thread(target=self._show, args=(name, start, ended), daemon=True)
         if self.stream is not None:
@@ -51,7 +49,7 @@ class Progress:
             self._done += self._last[1]
         self._last = now
         done, expected = (self._done + now[0], self._expected) if self._expected else now
-        self._fraction = min(done / expected, 1.0)
+        self._fraction, self._told = min(done / expected, 1.0), time.perf_counter()
 
     def clear(self):
         """Remove the line."""
@@ -64,24 +62,24 @@ class Progress:
         while not ended.wait(_TICK):
             elapsed = time.perf_counter() - start
             if elapsed >= PATIENCE:
-                text = line(name, elapsed, self._fraction)
+                text = line(name, elapsed, self._fraction, self._told - start)
                 self.stream.write("\r" + text.ljust(self._shown))
                 self.stream.flush()
                 self._shown = len(text)
 
 
-def line(name, elapsed, fraction=None):
-    """One line of progress after `elapsed` seconds.
+def line(name, elapsed, fraction=None, elapsed_then=0.0):
+    """One line of progress after `elapsed` seconds; the fraction was true when `elapsed_then` had passed.
 
-    >>> line("render", 30.0, 0.25)
-    'render  ██████──────────────────   25 %  1:30 left'
+    >>> line("render", 32.0, 0.25, 32.0)
+    'render  ██████──────────────────   25 %  1:36 left'
     >>> line("image", 61.4)
     'image  1:01'
     """
     if not fraction:
         return f"{name}  {_clock(elapsed)}"
     bar = "█" * int(_BAR * fraction)
-    left = elapsed * (1 - fraction) / fraction
+    left = max(elapsed_then / fraction - elapsed, 0.0)
     return f"{name}  {bar.ljust(_BAR, '─')}  {fraction:4.0%}".replace("%", " %") + f"  {_clock(left)} left"
 
 
