@@ -59,6 +59,10 @@ def test_from_set_to_pictures(fresh_blend, tmp_path, quick):
     assert whole["G"].pixels.shape == (32, 64)
     assert scene.camera == camera
     assert (scene.render.resolution_x, scene.render.resolution_percentage) == (64, 50)
+    with pytest.raises(RuntimeError, match="room.exr"):
+        bpy.ops.panorama.render_panorama(filepath=str(tmp_path / "room.exr" / "whole.exr"), width=64)
+    assert scene.camera == camera
+    assert (scene.render.resolution_x, scene.render.filepath) == (64, "//my_output")
     bpy.ops.panorama.render_frame()  # to the Render Result
     bpy.ops.panorama.set_up_picture()
 

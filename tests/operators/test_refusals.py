@@ -195,6 +195,15 @@ def test_another_image_asks_for_another_calibration(fresh_blend, tmp_path):
     assert bpy.context.scene.panorama_place.image.name == "other.exr"
 
 
+def test_not_in_edit_mode(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    built(bpy, tmp_path)
+    select(bpy, "floor")
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Only in Object Mode"):
+        bpy.ops.panorama.store_coordinates()
+
+
 def test_an_image_that_is_gone_is_named(fresh_blend, tmp_path):
     bpy = fresh_blend
     calibrated(bpy, tmp_path)
