@@ -5,6 +5,7 @@ The truth is rendered once and kept in out/bench/.
 """
 
 import json
+import os
 import pathlib
 import time
 
@@ -57,7 +58,13 @@ def main():
             if run in SHOWN:
                 pictures[lamps, label(run)] = picture
     sheet(pictures)
-    document = {"samples": SAMPLES, "size": [WIDTH, HEIGHT], "truth_samples": TRUTH_SAMPLES, "rows": rows}
+    document = {
+        "cores": os.cpu_count(),
+        "samples": SAMPLES,
+        "size": [WIDTH, HEIGHT],
+        "truth_samples": TRUTH_SAMPLES,
+        "rows": rows,
+    }
     (CHARTS / "methods.json").write_text(json.dumps(document, indent=1) + "\n")
 
 
