@@ -3,7 +3,7 @@
 import ctypes
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 
 _STDOUT = 1
 
@@ -15,7 +15,8 @@ def kept_for_results():
     kept = os.dup(_STDOUT)
     silence()
     try:
-        yield
+        with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):  # which may have another descriptor
+            yield
     finally:
         _flush()
         os.dup2(kept, _STDOUT)
