@@ -15,9 +15,6 @@ from pathlib import Path
 
 from ..cli import blender, interruption, stdout
 from ..cli.progress import Progress
-from ..ibl_toolkit.images import replacing
-from . import demo_docs
-from .demo_job import FULL, QUICK, run_job
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -32,17 +29,24 @@ def main(argv=None):
     with interruption.watched("demo") as watch:
         progress = Progress(sys.stderr if sys.stderr.isatty() else None)
         watch.clear = progress.clear
+        from .demo_job import FULL, QUICK  # bpy takes a moment, in which Ctrl-C should end the run as ever
+
         with stdout.kept_for_results():
             report = run_demo(arguments.out, QUICK if arguments.quick else FULL, progress)
     for name, seconds in report["seconds"].items():
         print(f"demo: {name:<12}{seconds:8.1f} s")
     if arguments.docs:
+        from . import demo_docs
+
         demo_docs.write_pictures(arguments.out, ROOT / "docs" / "images")
     return 0
 
 
 def run_demo(folder, effort, progress=None) -> dict:
     """Do the whole job and put its results into ``folder``; returns the report."""
+    from ..ibl_toolkit.images import replacing
+    from .demo_job import run_job
+
     progress = progress or Progress()
     folder = Path(folder)
     with tempfile.TemporaryDirectory(prefix="demo_") as finished:

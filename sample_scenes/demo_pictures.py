@@ -16,7 +16,7 @@ LINES_WIDTH = 2048
 """Lines are drawn on a picture of this width [px], whatever the photograph's."""
 DIMMED = 0.45
 """The photograph steps back behind the lines."""
-NEAREST, FARTHEST = 0.8, 4.0
+NEAREST, FARTHEST = 0.8, 3.5
 """Range of the depth's colours [m]: a hotel room as its own camera sees it."""
 
 
