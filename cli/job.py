@@ -45,9 +45,10 @@ def rebuild(job) -> tuple[Piece, ...]:
 def place_in(scene, job, pieces):
     """Put a calibrated panorama and its rebuilt shapes into a scene of Blender -> its place."""
     from ..cycles_integration import place
+    from ..cycles_integration.pieces import update_pieces
 
     made = place.create_place(scene, str(job.set.image.absolute()), job.calibration)
-    place.update_pieces(made, pieces)
+    update_pieces(made, pieces)
     return made
 
 

@@ -22,6 +22,8 @@ EQUIRECTANGULAR_FROM_CAMERA = Euler((math.pi / 2, 0, -math.pi / 2)).to_matrix().
 """Blender's panoramic camera looks along its −z with +y up; so turned it looks along +x with +z up."""
 NAMES_BEFORE_5 = {"IndexOB": "Object Index"}
 """Passes whose name changed in Blender 5.0."""
+STRIP_PIXELS = 2**25
+"""A render of a map takes some 90 bytes per pixel, most of which it gives back: larger ones go in strips."""
 POINT_FILTER = 0.01
 """A pixel filter this narrow [px] puts every sample on the pixel's centre."""
 
@@ -75,6 +77,21 @@ def sample_pixel_centres(scene: bpy.types.Scene):
     """Make every pixel show its centre alone, as the photograph's pixels are looked up."""
     scene.cycles.pixel_filter_type = "BLACKMAN_HARRIS"
     scene.cycles.filter_width = POINT_FILTER
+
+
+def render_in_strips(scene: bpy.types.Scene, names: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Render and return these passes as `render_passes` does, a large image strip by strip to spare memory."""
+    render = scene.render
+    count = 1  # a power of two, so that strips that adjoin agree on the row
+    while render.resolution_x * render.resolution_y > count * STRIP_PIXELS:
+        count *= 2
+    render.use_border = render.use_crop_to_border = count > 1
+    strips = []
+    for number in reversed(range(count)):  # from the top; Blender counts from the bottom
+        render.border_min_y, render.border_max_y = number / count, (number + 1) / count
+        passes = render_passes(scene)
+        strips.append({name: passes[name] for name in names})
+    return {name: np.concatenate([strip[name] for strip in strips]) for name in names}
 
 
 def render_passes(scene: bpy.types.Scene) -> dict[str, np.ndarray]:

@@ -1,67 +1,73 @@
-"""The composite as a node group of the scene, so that F12 gives the finished picture (Blender 4.5 and
-5.x)."""
+"""The composite as a node group of the scene, so that F12 gives the finished picture (Blender 4.5 and 5.x).
+
+What an artist adds behind the group's node stays: only the inside of the group and its inputs are made anew.
+"""
 
 from __future__ import annotations
 
 import bpy
 
-from . import view_layers
 from .node_trees import add, maths, new_group, vector_maths
 
 GROUP = "Panorama Composite"
-SOCKETS = {
-    "catcher": ("Objects", "Alpha", "Catcher", "Backplate", "At Infinity"),
-    "difference": ("With", "Alpha", "Without", "Backplate", "At Infinity"),
+INPUTS = {
+    "Objects": "NodeSocketColor",
+    "Alpha": "NodeSocketFloat",
+    "Catcher": "NodeSocketColor",
+    "Without": "NodeSocketColor",
+    "Backplate": "NodeSocketColor",
+    "At Infinity": "NodeSocketColor",
 }
+CATCHER, DIFFERENCE, PLAIN = "catcher", "difference", "plain"
+NAMES_BEFORE_5 = {"Environment": "Env"}
+"""Passes whose socket changed its name in Blender 5.0."""
 
 
 def connect(
-    scene: bpy.types.Scene, formula: str, sources: dict[str, tuple[str, str]], plate: bpy.types.Image | None
+    scene: bpy.types.Scene,
+    formula: str,
+    sources: dict[str, tuple[str, str]],
+    plate: bpy.types.Image | None = None,
 ):
-    """Build the composite group for a formula and feed it with (view layer, pass) pairs.
+    """Build the composite group for a formula and feed its inputs with (view layer, pass) pairs.
 
-    ``formula`` is ``catcher`` or ``difference`` (the group's docstrings below); ``plate`` stands for the
-    backplate where the picture is the panorama itself, so that untouched pixels are the file's.
+    With B the photograph behind (backplate and what lies at infinity) and α the objects' coverage,
+    ``catcher`` is objects + (1 − α)·B·catcher, ``difference`` is with + (1 − α)·(B − without), and ``plain``
+    the objects' render alone. ``plate`` stands for the backplate where the picture is the panorama itself, so
+    that untouched pixels are the file's.
     """
     tree = _scene_tree(scene)
-    _remove_ours(tree)
-    group = add(tree, "CompositorNodeGroup", node_tree=_group(formula), name=GROUP, label=GROUP)
+    for node in [n for n in tree.nodes if n.name.startswith(f"{GROUP} ")]:
+        tree.nodes.remove(node)
+    group = tree.nodes.get(GROUP)
+    if group is None:
+        group = add(tree, "CompositorNodeGroup", node_tree=_empty_group(), name=GROUP, label=GROUP)
+        tree.links.new(group.outputs["Image"], _output(tree).inputs[0])
+    _fill(group.node_tree, formula)
     for socket, (layer, name) in sources.items():
-        tree.links.new(_render_layer(tree, scene, layer).outputs[name], group.inputs[socket])
+        tree.links.new(_pass(tree, scene, layer, name), group.inputs[socket])
     if plate is not None:
-        tree.links.new(
-            add(tree, "CompositorNodeImage", image=plate, name=GROUP).outputs["Image"],
-            group.inputs["Backplate"],
-        )
-    _to_output(tree, group.outputs["Image"])
+        image = add(tree, "CompositorNodeImage", image=plate, name=f"{GROUP} Plate").outputs["Image"]
+        tree.links.new(image, group.inputs["Backplate"])
 
 
-def disconnect(scene: bpy.types.Scene):
-    """Take the composite out again: the render is the picture."""
-    tree = scene.compositing_node_group if hasattr(scene, "compositing_node_group") else scene.node_tree
-    if tree is not None:
-        _remove_ours(tree)
-        _to_output(tree, _render_layer(tree, scene, view_layers.OBJECTS).outputs["Image"])
-
-
-def _group(formula):
-    """Objects over the photograph × catcher pass; or photograph + with − without, where no object covers
-    it."""
-    old = bpy.data.node_groups.get(GROUP)
-    if old is not None:
-        bpy.data.node_groups.remove(old)
-    inputs = {name: "NodeSocketFloat" if name == "Alpha" else "NodeSocketColor" for name in SOCKETS[formula]}
-    tree = new_group(GROUP, "CompositorNodeTree", {"Image": "NodeSocketColor"}, inputs)
+def _fill(tree, formula):
+    tree.nodes.clear()
     given = add(tree, "NodeGroupInput").outputs
-    behind = vector_maths(tree, "ADD", given["Backplate"], given["At Infinity"])
-    uncovered = maths(tree, "SUBTRACT", 1.0, given["Alpha"])
-    if formula == "catcher":
-        changed, front = vector_maths(tree, "MULTIPLY", behind, given["Catcher"]), given["Objects"]
-    else:
-        changed, front = vector_maths(tree, "SUBTRACT", behind, given["Without"]), given["With"]
-    image = vector_maths(tree, "ADD", front, vector_maths(tree, "MULTIPLY", changed, uncovered))
+    image = given["Objects"]
+    if formula != PLAIN:
+        behind = vector_maths(tree, "ADD", given["Backplate"], given["At Infinity"])
+        if formula == CATCHER:
+            behind = vector_maths(tree, "MULTIPLY", behind, given["Catcher"])
+        else:
+            behind = vector_maths(tree, "SUBTRACT", behind, given["Without"])
+        uncovered = maths(tree, "SUBTRACT", 1.0, given["Alpha"])
+        image = vector_maths(tree, "ADD", image, vector_maths(tree, "MULTIPLY", behind, uncovered))
     add(tree, "NodeGroupOutput", {"Image": image})
-    return tree
+
+
+def _empty_group():
+    return new_group(GROUP, "CompositorNodeTree", {"Image": "NodeSocketColor"}, INPUTS)
 
 
 def _scene_tree(scene):
@@ -77,19 +83,16 @@ def _scene_tree(scene):
     return scene.node_tree
 
 
-def _remove_ours(tree):
-    for node in [n for n in tree.nodes if n.name.startswith(GROUP)]:
-        tree.nodes.remove(node)
+def _pass(tree, scene, layer, name):
+    node_name = f"{GROUP} {layer}"
+    node = tree.nodes.get(node_name)
+    if node is None:
+        node = add(tree, "CompositorNodeRLayers", scene=scene, layer=layer, name=node_name)
+    return node.outputs.get(name) or node.outputs[NAMES_BEFORE_5[name]]
 
 
-def _render_layer(tree, scene, layer):
-    name = f"{GROUP} {layer}"
-    return tree.nodes.get(name) or add(tree, "CompositorNodeRLayers", scene=scene, layer=layer, name=name)
-
-
-def _to_output(tree, image):
+def _output(tree):
+    """The node that holds the tree's picture."""
     kinds = ("NodeGroupOutput", "CompositorNodeComposite")
     output = next((n for n in tree.nodes if n.bl_idname in kinds), None)
-    if output is None:
-        output = add(tree, kinds[0] if tree.interface.items_tree else kinds[1])
-    tree.links.new(image, output.inputs[0])
+    return output or add(tree, kinds[0] if tree.interface.items_tree else kinds[1])

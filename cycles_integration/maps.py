@@ -50,7 +50,7 @@ def render_depth(scene: bpy.types.Scene, place: Place, width: int) -> DepthMap:
         for thing in real:
             thing.pass_index = SUPPORT_INDEX if thing.panorama_role == roles.SUPPORT else 0
         layer.material_override = materials.black_material()
-        passes = capture.render_passes(taken)
+        passes = capture.render_in_strips(taken, ("Depth", "Object Index"))
     depth = np.where(passes["Depth"] < FAR, passes["Depth"], np.inf).astype(np.float32)
     return DepthMap(depth, np.isfinite(depth) & (passes["Object Index"] == SUPPORT_INDEX))
 

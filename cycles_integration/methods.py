@@ -44,23 +44,19 @@ def set_up(scene: bpy.types.Scene, place: Place, method: str, plate: bpy.types.I
     )
     scene.render.film_transparent = method != SINGLE
     if method == SINGLE:
-        compositor.disconnect(scene)
+        compositor.connect(scene, compositor.PLAIN, {"Objects": (OBJECTS, "Image")})
         return
     view_layers.add_backplate(scene, place)
+    sources = {
+        "Objects": (OBJECTS, "Image"),
+        "Backplate": (BACKPLATE, "Image"),
+        "At Infinity": (BACKPLATE, "Environment"),
+    }
     if method == DIFFERENCE:
         view_layers.add_without(scene, place)
         view_layers.add_mask(scene, place)
-    compositor.connect(scene, DIFFERENCE if method == DIFFERENCE else CATCHER, _sources(method), plate)
-
-
-def _sources(method):
-    """(view layer, pass) for each input of the composite."""
-    behind = {"Backplate": (BACKPLATE, "Image"), "At Infinity": (BACKPLATE, "Environment")}
-    if method == DIFFERENCE:
-        return {"With": (OBJECTS, "Image"), "Alpha": (MASK, "Alpha"), "Without": (WITHOUT, "Image"), **behind}
-    return {
-        "Objects": (OBJECTS, "Image"),
-        "Alpha": (OBJECTS, "Alpha"),
-        "Catcher": (OBJECTS, "Shadow Catcher"),
-        **behind,
-    }
+        sources |= {"Alpha": (MASK, "Alpha"), "Without": (WITHOUT, "Image")}
+        compositor.connect(scene, compositor.DIFFERENCE, sources, plate)
+    else:
+        sources |= {"Alpha": (OBJECTS, "Alpha"), "Catcher": (OBJECTS, "Shadow Catcher")}
+        compositor.connect(scene, compositor.CATCHER, sources, plate)

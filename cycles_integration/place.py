@@ -16,8 +16,6 @@ ORIGIN = "Panorama Origin"
 CATCHER = "Panorama Catcher"
 """An Empty that instances the real surfaces as shadow catchers; the surfaces themselves stay visible, for the
 backplate and for the artist's viewport."""
-PIECE = "panorama_piece"
-"""Custom property of an object: the shape of the set that it was built from."""
 
 
 class Place(bpy.types.PropertyGroup):
@@ -70,33 +68,6 @@ def set_calibration(place: Place, world_from_panorama: np.ndarray, camera_height
     """Put the origin at (0, 0, camera_height) [m] with the panorama's orientation."""
     rotation = Matrix(np.asarray(world_from_panorama).tolist()).to_4x4()
     place.origin.matrix_world = Matrix.Translation((0, 0, camera_height)) @ rotation
-
-
-def update_pieces(place: Place, pieces) -> list[bpy.types.Object]:
-    """Build the pieces of a reconstruction, or bring those already built up to date.
-
-    Objects are found by name: their identity, modifiers and children stay. Objects of the place that no piece
-    names any more are removed.
-    """
-    before = {thing[PIECE]: thing for thing in place.surfaces.all_objects if PIECE in thing}
-    built = [_update_piece(place, before.pop(piece.name, None), piece) for piece in pieces]
-    for thing in before.values():
-        bpy.data.objects.remove(thing)
-    return built
-
-
-def _update_piece(place, thing, piece):
-    if thing is None:
-        thing = bpy.data.objects.new(piece.name, bpy.data.meshes.new(piece.name))
-        thing[PIECE] = piece.name
-        place.surfaces.objects.link(thing)
-    thing.data.clear_geometry()
-    thing.data.from_pydata(piece.mesh.vertices.tolist(), [], [list(face) for face in piece.mesh.faces])
-    thing.matrix_world = Matrix(piece.mesh.world_from_local.tolist())
-    thing.panorama_role = piece.role
-    thing.panorama_reflectivity, thing.panorama_roughness = piece.reflectivity, piece.roughness
-    thing.display_type = "WIRE" if piece.role == roles.ENVIRONMENT else "TEXTURED"
-    return thing
 
 
 def sort_objects(scene: bpy.types.Scene, place: Place):

@@ -14,6 +14,8 @@ from . import blender_images, capture, methods, roles
 from .lookup import STORED_POSITION
 from .place import Place, place_of
 
+OUTPUT_SETTINGS = ("media_type", "file_format", "color_mode", "color_depth")
+
 
 @dataclass(frozen=True)
 class Picture:
@@ -60,12 +62,12 @@ def render_picture(scene: bpy.types.Scene, camera: bpy.types.Object, picture: Pi
 
 
 def write_render(scene: bpy.types.Scene, path: Path):
-    """Render the scene as it is set up to a float EXR."""
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):  # Blender 5.0
-        settings.media_type = "IMAGE"
-    settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
-    with replacing(Path(path)) as temporary:
+    """Render the scene as it is set up to a float EXR; its own output path and format stay."""
+    with _output_kept(scene), replacing(Path(path)) as temporary:
+        settings = scene.render.image_settings
+        if hasattr(settings, "media_type"):  # Blender 5.0
+            settings.media_type = "IMAGE"
+        settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
         scene.render.filepath = str(temporary)
         bpy.ops.render.render(write_still=True, scene=scene.name)
 
@@ -96,3 +98,17 @@ def _plate(scene, place: Place, camera, picture):
     size = (picture.width, picture.height)
     image = cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
     return blender_images.replace_image(bpy.data.images.get("Panorama Plate"), "Panorama Plate", image)
+
+
+@contextlib.contextmanager
+def _output_kept(scene):
+    """Give the scene its output path and format back afterwards."""
+    settings = scene.render.image_settings
+    names = [name for name in OUTPUT_SETTINGS if hasattr(settings, name)]
+    kept, path = [getattr(settings, name) for name in names], scene.render.filepath
+    try:
+        yield
+    finally:
+        scene.render.filepath = path
+        for name, value in zip(names, kept, strict=True):
+            setattr(settings, name, value)

@@ -3,6 +3,7 @@
 import bpy
 
 from ..cycles_integration import roles
+from ..cycles_integration.pieces import PIECE, kept_pieces
 from . import progress, solving
 from .reporting import Reporting, possible
 
@@ -43,7 +44,7 @@ class PANORAMA_OT_build(Reporting, bpy.types.Operator):
         for shape in context.scene.panorama_set.shapes:
             for warning in shape.warnings.splitlines():
                 self.report({"WARNING"}, f"{shape.name}: {warning}")
-        kept = len(solving.kept_pieces(context.scene.panorama_place))
+        kept = len(kept_pieces(context.scene.panorama_place))
         stayed = f"; {kept} that keep their picture stay as they are" if kept else ""
         return f"Built {len(context.scene.panorama_set.shapes)} shapes{stayed}"
 
@@ -66,7 +67,7 @@ class PANORAMA_OT_set_role(Reporting, bpy.types.Operator):
         meshes = progress.selected_meshes(context)
         state = context.scene.panorama_set
         shapes = {shape.name: shape for shape in state.shapes if shape.is_built}
-        behind = [shapes[mesh[solving.PIECE]] for mesh in meshes if mesh.get(solving.PIECE) in shapes]
+        behind = [shapes[mesh[PIECE]] for mesh in meshes if mesh.get(PIECE) in shapes]
         if behind and self.role == roles.SYNTHETIC:
             raise ValueError(f"'{behind[0].name}' is a shape of the real place, so it cannot be synthetic")
         for shape in behind:

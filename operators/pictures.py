@@ -10,8 +10,6 @@ from ..cycles_integration.rendering import Picture, panorama_camera, render_pict
 from . import progress
 from .reporting import Reporting, possible
 
-OUTPUT = ("media_type", "file_format", "color_mode", "color_depth")
-
 
 class _ThroughCamera(Reporting):
     """An operator on a picture through the scene's camera."""
@@ -51,7 +49,7 @@ class PANORAMA_OT_render_frame(_ThroughCamera, bpy.types.Operator):
         scene = context.scene
         picture = frame(scene)
         if self.filepath:
-            with resolution_kept(scene), output_kept(scene):
+            with resolution_kept(scene):
                 render_picture(scene, scene.camera, picture, bpy.path.abspath(self.filepath))
             return f"Wrote {self.filepath}"
         with resolution_kept(scene):
@@ -89,7 +87,7 @@ class PANORAMA_OT_render_panorama(Reporting, ExportHelper, bpy.types.Operator):
         width = self.width or place_of(scene).image.size[0]
         with resolution_kept(scene):
             try:
-                with panorama_camera(scene) as camera, output_kept(scene):
+                with panorama_camera(scene) as camera:
                     render_picture(scene, camera, picture_of(scene, width, width // 2), self.filepath)
             finally:
                 scene.camera = own_camera
@@ -121,20 +119,6 @@ def resolution_kept(scene):
     finally:
         for name, value in zip(names, kept, strict=True):
             setattr(scene.render, name, value)
-
-
-@contextlib.contextmanager
-def output_kept(scene):
-    """Give the scene its output path and format back afterwards."""
-    settings = scene.render.image_settings
-    names = [name for name in OUTPUT if hasattr(settings, name)]
-    kept, path = [getattr(settings, name) for name in names], scene.render.filepath
-    try:
-        yield
-    finally:
-        scene.render.filepath = path
-        for name, value in zip(names, kept, strict=True):
-            setattr(settings, name, value)
 
 
 classes = (PANORAMA_OT_set_up_picture, PANORAMA_OT_render_frame, PANORAMA_OT_render_panorama)

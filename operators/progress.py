@@ -3,7 +3,7 @@
 from mathutils import Vector
 
 from ..cycles_integration import picture_coordinates, roles
-from ..cycles_integration.place import PIECE
+from ..cycles_integration.pieces import PIECE
 from . import conversion
 
 ORIENTING = ("RECTANGLE", "PARALLELS", "VERTICAL")

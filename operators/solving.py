@@ -5,8 +5,8 @@ So a refusal leaves the scene as it was, and picture, origin and rebuilt shapes 
 """
 
 from ..cycles_integration import blender_images
-from ..cycles_integration.picture_coordinates import has_stored_positions
-from ..cycles_integration.place import PIECE, create_place, update_pieces
+from ..cycles_integration.pieces import PIECE, built_pieces, update_pieces
+from ..cycles_integration.place import create_place
 from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import read_panorama
 from ..ibl_toolkit.panorama_set import PanoramaSet
@@ -68,45 +68,15 @@ def _solve(scene, names):
     pieces = reconstruct(panorama_set, calibration, image.size[0])
     state.image = image
     place = create_place(scene, str(panorama_set.image), calibration)
-    _update_pieces(place, pieces)
+    update_pieces(place, pieces)
     _note_calibration(state, calibration)
     _note_pieces(state, pieces)
     state.shapes_are_old = names is not None and state.shapes_are_old
     return calibration
 
 
-def kept_pieces(place):
-    """The built pieces that keep their picture: an artist has made something of these, so they stay as they
-    are."""
-    surfaces = place.surfaces.all_objects if place.surfaces else ()
-    return [thing for thing in surfaces if PIECE in thing and has_stored_positions(thing)]
-
-
-def _update_pieces(place, pieces):
-    """Build the pieces anew, but for those that are kept; a duplicate is the artist's own from now on."""
-    _release_duplicates(place)
-    kept = {thing: thing[PIECE] for thing in kept_pieces(place)}
-    for thing in kept:
-        del thing[PIECE]
-    others = {thing[PIECE] for thing in place.surfaces.all_objects if PIECE in thing}
-    skipped = set(kept.values()) - others
-    update_pieces(place, [piece for piece in pieces if piece.name not in skipped])
-    for thing, name in kept.items():
-        thing[PIECE] = name
-
-
-def _release_duplicates(place):
-    """Of several objects with live pictures that call themselves one piece, the one with its name is it."""
-    built = [o for o in place.surfaces.all_objects if PIECE in o and not has_stored_positions(o)]
-    owners = {}
-    for thing in sorted(built, key=lambda o: o.name != o[PIECE]):
-        if owners.setdefault(thing[PIECE], thing) != thing:
-            del thing[PIECE]
-
-
 def _built_names(scene):
-    surfaces = scene.panorama_place.surfaces
-    return {o[PIECE] for o in surfaces.all_objects if PIECE in o} if surfaces else set()
+    return {thing[PIECE] for thing in built_pieces(scene.panorama_place)}
 
 
 def _note_calibration(state, calibration):

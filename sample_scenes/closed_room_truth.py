@@ -13,6 +13,7 @@ import OpenEXR
 from mathutils import Matrix, Vector
 
 from ..cycles_integration import capture, place, preparation, rendering, roles
+from ..cycles_integration.pieces import update_pieces
 from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import read_panorama, write_exr
 from ..ibl_toolkit.reconstruction import reconstruct
@@ -83,7 +84,7 @@ def mixed_scene(
     panorama_set = closed_room_set(image)
     calibration = calibrate(panorama_set.calibration, (width, height))
     here = place.create_place(scene, str(image), calibration)
-    place.update_pieces(here, reconstruct(panorama_set, calibration))
+    update_pieces(here, reconstruct(panorama_set, calibration))
     add_objects(scene)
     scene.camera = add_camera(scene)
     return scene, preparation.prepare(scene, most_lights)

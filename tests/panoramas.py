@@ -27,6 +27,7 @@ def write_panorama(path, image):
 def room_place(bpy, image, **changes):
     """A scene whose place is the closed room, rebuilt from picks as exact as those on a large image."""
     from expanded_panoramas.cycles_integration import place
+    from expanded_panoramas.cycles_integration.pieces import update_pieces
     from expanded_panoramas.ibl_toolkit.calibration import calibrate
     from expanded_panoramas.ibl_toolkit.reconstruction import reconstruct
 
@@ -34,5 +35,5 @@ def room_place(bpy, image, **changes):
     calibration = calibrate(panorama_set.calibration, (4096, 2048))
     scene = bpy.context.scene
     here = place.create_place(scene, str(image), calibration)
-    place.update_pieces(here, reconstruct(panorama_set, calibration))
+    update_pieces(here, reconstruct(panorama_set, calibration))
     return scene, here

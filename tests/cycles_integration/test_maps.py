@@ -94,3 +94,34 @@ def test_gloss_of_a_mirror_floor_is_what_it_mirrors(shell, fresh_blend):
     gloss = maps.render_gloss(scene, here, 32, 4)
     assert gloss[-1].mean() == pytest.approx(0.7 / 4, rel=0.01)
     assert gloss[0].max() < 1e-3
+
+
+def test_what_no_surface_covers_lights_from_infinity(shell, fresh_blend):
+    """A floor alone under a uniform sky: E = π·L, and the World's part of the map is what has no depth."""
+    from expanded_panoramas.cycles_integration import blender_images, preparation
+
+    scene, here = shell
+    fresh_blend.data.objects.remove(fresh_blend.data.objects["walls"])
+    preparation.prepare(scene)
+    sky = blender_images.array_from_image(here.sky)
+    assert np.allclose(sky[:7], 0.7)
+    assert np.allclose(sky[-1], 0)
+    irradiance = blender_images.array_from_image(here.irradiance)
+    assert irradiance[-2:].mean() == pytest.approx(0.7, rel=IRRADIANCE_TOLERANCE)
+
+
+def test_the_light_of_a_lamp_is_kept_when_it_becomes_a_light(fresh_blend, tmp_path, monkeypatch):
+    """Irradiance of the room with the lamp in the map, and with the lamp taken out of it."""
+    from expanded_panoramas.cycles_integration import blender_images, preparation
+
+    monkeypatch.setattr(preparation, "IRRADIANCE_WIDTH", 64)
+    image = np.full((128, 256, 3), 0.3, np.float32)
+    image[20:26, 60:72] = (90, 60, 30)
+    scene, here = panoramas.room_place(fresh_blend, panoramas.write_panorama(tmp_path / "lamp.exr", image))
+    found = []
+    for most_lights in (0, None):
+        prepared = preparation.prepare(scene, most_lights)
+        found.append(blender_images.array_from_image(here.irradiance)[16:].mean(axis=(0, 1)))
+    assert prepared.light_count >= 1
+    assert found[0][0] > 1.2 * found[0][2]
+    assert np.allclose(found[1], found[0], rtol=0.06)  # the plain map's own noise

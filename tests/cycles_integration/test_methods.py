@@ -91,3 +91,37 @@ def test_an_unprepared_place_is_refused(fresh_blend, tmp_path):
     scene, _ = panoramas.room_place(fresh_blend, panoramas.smooth_panorama(tmp_path / "smooth.exr"))
     with pytest.raises(ValueError, match="not prepared"):
         render(scene, add_camera(scene), tmp_path / "picture.exr")
+
+
+@pytest.mark.parametrize("method", ["catcher", "difference"])
+def test_a_glossy_floor_mirrors_the_objects(prepared, fresh_blend, tmp_path, method):
+    """A red wall of light behind the floor shows in a smooth floor, and not in a matte one."""
+    from expanded_panoramas.cycles_integration import preparation
+
+    scene, camera = prepared
+    add_glowing_board(fresh_blend, scene)
+    floor = fresh_blend.data.objects["floor"]
+    floor.panorama_roughness = 0.0
+    redness = []
+    for floor.panorama_reflectivity in (0.0, 0.5):
+        preparation.prepare(scene)
+        picture = render(scene, camera, tmp_path / "picture.exr", method=method, samples=16)
+        redness.append((picture[..., 0] - picture[..., 1])[18:24, 18:30].mean())
+    assert redness[1] > redness[0] + 0.05
+
+
+def add_glowing_board(bpy, scene):
+    """A board across the view that emits red to mirror rays alone, so that it lights nothing diffuse."""
+    mesh = bpy.data.meshes.new("board")
+    mesh.from_pydata([(2.0, -2, 0), (0.5, -2.2, 0), (0.5, -2.2, 2), (2.0, -2, 2)], [], [(0, 1, 2, 3)])
+    material = bpy.data.materials.new("red")
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    emission, output = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeOutputMaterial")
+    emission.inputs["Color"].default_value = (3, 0, 0, 1)
+    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    mesh.materials.append(material)
+    board = bpy.data.objects.new("board", mesh)
+    board.visible_diffuse = False
+    scene.collection.objects.link(board)

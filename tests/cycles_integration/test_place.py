@@ -24,7 +24,7 @@ def test_pieces_have_roles_and_stand_where_they_were_picked(fresh_blend, place):
 
 
 def test_rebuilding_keeps_objects_and_removes_what_is_gone(fresh_blend, place):
-    from expanded_panoramas.cycles_integration.place import update_pieces
+    from expanded_panoramas.cycles_integration.pieces import update_pieces
     from expanded_panoramas.ibl_toolkit.calibration import calibrate
     from expanded_panoramas.ibl_toolkit.reconstruction import reconstruct
     from expanded_panoramas.sample_scenes.closed_room_set import closed_room_set
