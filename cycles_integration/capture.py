@@ -80,7 +80,7 @@ def sample_pixel_centres(scene: bpy.types.Scene):
 
 
 def render_in_strips(scene: bpy.types.Scene, names: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Render and return these passes as `render_passes` does, a large image strip by strip to spare memory."""
+    """Render and return these passes as `render_passes` does, a large image in strips to spare memory."""
     render = scene.render
     count = 1  # a power of two, so that strips that adjoin agree on the row
     while render.resolution_x * render.resolution_y > count * STRIP_PIXELS:

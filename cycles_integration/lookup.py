@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from .node_trees import add, maths, mix_vectors, new_group, output_group, vector_maths
-from .place import Place
+from .place import Place, own_name
 
 NAME = "Panorama Lookup"
 STORED_POSITION = "panorama_position"
@@ -25,7 +25,7 @@ def build_lookup(place: Place) -> bpy.types.NodeTree:
     lights give, for paths that have had a diffuse bounce; ``Irradiance``, E/π; ``Gloss``, the support's own
     reflection as the panorama saw it.
     """
-    tree = _empty_group()
+    tree = _empty_group(own_name(place, NAME))
     direction = _direction(tree, place.origin)
 
     def texture(image):
@@ -43,9 +43,9 @@ def build_lookup(place: Place) -> bpy.types.NodeTree:
     return tree
 
 
-def lookup(tree: bpy.types.NodeTree, output: str) -> bpy.types.NodeSocket:
+def lookup(place: Place, tree: bpy.types.NodeTree, output: str) -> bpy.types.NodeSocket:
     """Use the look-up group in a material; returns the wanted output."""
-    return add(tree, "ShaderNodeGroup", node_tree=bpy.data.node_groups[NAME]).outputs[output]
+    return add(tree, "ShaderNodeGroup", node_tree=bpy.data.node_groups[own_name(place, NAME)]).outputs[output]
 
 
 def environment_texture(tree, image, direction) -> bpy.types.NodeSocket:
@@ -59,9 +59,9 @@ def after_diffuse_bounce(tree) -> bpy.types.NodeSocket:
     return maths(tree, "GREATER_THAN", depth, 0.5)
 
 
-def _empty_group():
+def _empty_group(name):
     outputs = dict.fromkeys((PHOTOGRAPH, DIFFUSE_LIGHT, IRRADIANCE, GLOSS), "NodeSocketColor")
-    tree = bpy.data.node_groups.get(NAME) or new_group(NAME, "ShaderNodeTree", outputs)
+    tree = bpy.data.node_groups.get(name) or new_group(name, "ShaderNodeTree", outputs)
     tree.nodes.clear()
     return tree
 

@@ -49,7 +49,7 @@ def render_depth(scene: bpy.types.Scene, place: Place, width: int) -> DepthMap:
         layer.use_pass_z = layer.use_pass_object_index = True
         for thing in real:
             thing.pass_index = SUPPORT_INDEX if thing.panorama_role == roles.SUPPORT else 0
-        layer.material_override = materials.black_material()
+        layer.material_override = materials.black_material(place)
         passes = capture.render_in_strips(taken, ("Depth", "Object Index"))
     depth = np.where(passes["Depth"] < FAR, passes["Depth"], np.inf).astype(np.float32)
     return DepthMap(depth, np.isfinite(depth) & (passes["Object Index"] == SUPPORT_INDEX))
@@ -62,14 +62,14 @@ def render_irradiance(scene: bpy.types.Scene, place: Place, width: int, samples:
     rays, so light that bounces between real surfaces is in it. Denoised: it varies slowly.
     """
     lookup.build_lookup(place)
-    return _render_light(scene, place, width, samples, materials.irradiance_material())
+    return _render_light(scene, place, width, samples, materials.irradiance_material(place))
 
 
 def render_gloss(scene: bpy.types.Scene, place: Place, width: int, samples: int) -> np.ndarray | None:
     """Render the reflection (H, W, 3) that the panorama saw in glossy supports; None where none is glossy."""
     if not any(thing.panorama_reflectivity > 0 for thing in roles.with_role(scene, roles.SUPPORT)):
         return None
-    return _render_light(scene, place, width, samples, materials.gloss_material())
+    return _render_light(scene, place, width, samples, materials.gloss_material(place))
 
 
 def shrink(image: np.ndarray, width: int) -> np.ndarray:

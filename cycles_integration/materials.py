@@ -7,22 +7,22 @@ import bpy
 from . import lookup, roles
 from .lookup import DIFFUSE_LIGHT, GLOSS, IRRADIANCE, PHOTOGRAPH
 from .node_trees import add, vector_maths
-from .place import Place
+from .place import Place, own_name
 
 MOST_ALBEDO = 0.9
 """A real surface reflects no more; what the photograph shows beyond that is taken as its own light."""
 LEAST_IRRADIANCE = 1e-4
 
 
-def environment_material() -> bpy.types.Material:
+def environment_material(place: Place) -> bpy.types.Material:
     """Emit the photograph; to paths after a diffuse bounce, what the extracted lights leave of it (eq.
     5.8)."""
-    material = _emptied("Panorama Environment")
-    _surface(material, _emission(material.node_tree, lookup.lookup(material.node_tree, DIFFUSE_LIGHT)))
+    material = _emptied(place, "Panorama Environment")
+    _surface(material, _emission(material.node_tree, lookup.lookup(place, material.node_tree, DIFFUSE_LIGHT)))
     return material
 
 
-def support_material() -> bpy.types.Material:
+def support_material(place: Place) -> bpy.types.Material:
     """Reflect light with the effective albedo, so that undisturbed it shows exactly the photograph.
 
     With E the irradiance that the place throws on the point and S the reflection that the panorama saw there,
@@ -30,10 +30,10 @@ def support_material() -> bpy.types.Material:
     where it bounces. It replaces the factor ES of eq. 5.11, whose light has neither distance nor emitter
     cosine.
     """
-    material = _emptied("Panorama Support")
+    material = _emptied(place, "Panorama Support")
     tree = material.node_tree
-    photograph, irradiance = lookup.lookup(tree, PHOTOGRAPH), lookup.lookup(tree, IRRADIANCE)
-    diffuse_part = vector_maths(tree, "SUBTRACT", photograph, lookup.lookup(tree, GLOSS))
+    photograph, irradiance = lookup.lookup(place, tree, PHOTOGRAPH), lookup.lookup(place, tree, IRRADIANCE)
+    diffuse_part = vector_maths(tree, "SUBTRACT", photograph, lookup.lookup(place, tree, GLOSS))
     floor = vector_maths(tree, "MAXIMUM", irradiance, (LEAST_IRRADIANCE,) * 3)
     albedo = vector_maths(tree, "DIVIDE", diffuse_part, floor)
     albedo = vector_maths(
@@ -49,32 +49,33 @@ def support_material() -> bpy.types.Material:
     return material
 
 
-def backplate_material() -> bpy.types.Material:
+def backplate_material(place: Place) -> bpy.types.Material:
     """Show the photograph, projected on the rebuilt surfaces, to the camera."""
-    material = _emptied("Panorama Backplate")
-    _surface(material, _emission(material.node_tree, lookup.lookup(material.node_tree, PHOTOGRAPH)))
+    material = _emptied(place, "Panorama Backplate")
+    _surface(material, _emission(material.node_tree, lookup.lookup(place, material.node_tree, PHOTOGRAPH)))
     return material
 
 
-def black_material() -> bpy.types.Material:
+def black_material(place: Place) -> bpy.types.Material:
     """Neither emit nor reflect: for passes of geometry."""
-    material = _emptied("Panorama Geometry")
+    material = _emptied(place, "Panorama Geometry")
     _surface(material, _emission(material.node_tree, (0, 0, 0)))
     return material
 
 
-def irradiance_material() -> bpy.types.Material:
+def irradiance_material(place: Place) -> bpy.types.Material:
     """White and diffuse where the camera looks, the place's light everywhere else: the camera then sees
     E/π."""
     return _probe(
+        place,
         "Panorama Irradiance",
         lambda tree: add(tree, "ShaderNodeBsdfDiffuse", {"Color": (1, 1, 1, 1)}).outputs[0],
     )
 
 
-def gloss_material() -> bpy.types.Material:
+def gloss_material(place: Place) -> bpy.types.Material:
     """A support's reflection alone where the camera looks, the place's light everywhere else."""
-    return _probe("Panorama Gloss", _reflection)
+    return _probe(place, "Panorama Gloss", _reflection)
 
 
 def assign(scene: bpy.types.Scene, place: Place):
@@ -83,7 +84,7 @@ def assign(scene: bpy.types.Scene, place: Place):
     Where lights were extracted, Cycles aims at these and not at the surfaces, whose light is dim and
     everywhere.
     """
-    by_role = {roles.SUPPORT: support_material(), roles.ENVIRONMENT: environment_material()}
+    by_role = {roles.SUPPORT: support_material(place), roles.ENVIRONMENT: environment_material(place)}
     for material in by_role.values():
         material.cycles.emission_sampling = "NONE" if place.lights.objects else "AUTO"
     for thing in roles.real_objects(scene):
@@ -91,11 +92,11 @@ def assign(scene: bpy.types.Scene, place: Place):
         thing.data.materials.append(by_role[thing.panorama_role])
 
 
-def _probe(name, seen_by_camera):
-    material = _emptied(name)
+def _probe(place, name, seen_by_camera):
+    material = _emptied(place, name)
     tree = material.node_tree
     camera = add(tree, "ShaderNodeLightPath").outputs["Is Camera Ray"]
-    light = _emission(tree, lookup.lookup(tree, DIFFUSE_LIGHT))
+    light = _emission(tree, lookup.lookup(place, tree, DIFFUSE_LIGHT))
     _surface(
         material, add(tree, "ShaderNodeMixShader", {0: camera, 1: light, 2: seen_by_camera(tree)}).outputs[0]
     )
@@ -128,7 +129,8 @@ def _surface(material, shader):
     add(material.node_tree, "ShaderNodeOutputMaterial", {"Surface": shader})
 
 
-def _emptied(name):
+def _emptied(place, name):
+    name = own_name(place, name)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     material.use_nodes = True
     material.node_tree.nodes.clear()

@@ -34,6 +34,7 @@ class Place(bpy.types.PropertyGroup):
     irradiance: bpy.props.PointerProperty(type=bpy.types.Image)
     gloss: bpy.props.PointerProperty(type=bpy.types.Image)
     sky: bpy.props.PointerProperty(type=bpy.types.Image)
+    plate: bpy.props.PointerProperty(type=bpy.types.Image)
 
 
 def place_of(scene: bpy.types.Scene) -> Place:
@@ -62,6 +63,12 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
         place.catcher.hide_viewport = True
     set_calibration(place, calibration.world_from_panorama, calibration.camera_height)
     return place
+
+
+def own_name(place: Place, name: str) -> str:
+    """Return the name of a data-block of this place alone: a file may hold several scenes with a place
+    each."""
+    return f"{name} ({place.id_data.name})"
 
 
 def set_calibration(place: Place, world_from_panorama: np.ndarray, camera_height: float):

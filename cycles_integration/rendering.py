@@ -97,7 +97,8 @@ def _plate(scene, place: Place, camera, picture):
     smaller = picture.width < image.shape[1]
     size = (picture.width, picture.height)
     image = cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
-    return blender_images.replace_image(bpy.data.images.get("Panorama Plate"), "Panorama Plate", image)
+    place.plate = blender_images.replace_image(place.plate, "Panorama Plate", image)
+    return place.plate
 
 
 @contextlib.contextmanager

@@ -31,7 +31,7 @@ def add_backplate(scene, place) -> bpy.types.ViewLayer:
     """The photograph, projected on the real surfaces and seen by the scene's camera, and what lies at
     infinity."""
     layer = _real_only(scene, place, BACKPLATE)
-    layer.material_override = materials.backplate_material()
+    layer.material_override = materials.backplate_material(place)
     layer.use_pass_environment = True
     layer.samples = BACKPLATE_SAMPLES
     return layer
@@ -47,7 +47,7 @@ def add_mask(scene, place) -> bpy.types.ViewLayer:
     layer = _layer(scene, place, MASK)
     for collection in (place.support, place.environment):  # the flag does not reach child collections
         layer_collection(layer, collection).holdout = True
-    layer.material_override = materials.black_material()
+    layer.material_override = materials.black_material(place)
     layer.samples = MASK_SAMPLES
     return layer
 

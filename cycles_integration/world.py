@@ -6,7 +6,7 @@ import bpy
 
 from .lookup import environment_texture
 from .node_trees import add, maths, mix_vectors
-from .place import Place
+from .place import Place, own_name
 
 NAME = "Panorama World"
 
@@ -18,7 +18,8 @@ def build_world(scene: bpy.types.Scene, place: Place, *, whole_map_lights: bool 
     from the sky alone, the part of the map without depth (nothing where the place is closed), or from the
     whole map where ``whole_map_lights``.
     """
-    world = bpy.data.worlds.get(NAME) or bpy.data.worlds.new(NAME)
+    name = own_name(place, NAME)
+    world = bpy.data.worlds.get(name) or bpy.data.worlds.new(name)
     world.use_nodes = True
     tree = world.node_tree
     tree.nodes.clear()

@@ -153,7 +153,7 @@ def covered_by_objects(made, objects, depth) -> np.ndarray:
         for thing in objects:
             taken.collection.objects.link(thing)
         taken.view_layers[0].use_pass_z = True
-        taken.view_layers[0].material_override = materials.black_material()
+        taken.view_layers[0].material_override = materials.black_material(made)
         nearer = capture.render_passes(taken)["Depth"] < depth * 0.9999
     around = np.ones((2 * PIXELS_AROUND + 1,) * 2, np.uint8)
     return cv2.dilate(nearer.astype(np.uint8), around).astype(bool)

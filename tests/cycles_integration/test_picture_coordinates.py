@@ -50,7 +50,7 @@ def render(bpy, place, thing, tmp_path, width=8):
     scene.cycles.samples = 1
     scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
     capture.sample_pixel_centres(scene)
-    scene.view_layers[0].material_override = materials.backplate_material()
+    scene.view_layers[0].material_override = materials.backplate_material(place)
     try:
         return capture.render_passes(scene)["Combined"][..., :3]
     finally:

@@ -70,3 +70,22 @@ def test_a_scene_without_a_panorama_is_refused(fresh_blend):
 
     with pytest.raises(ValueError, match="has no panorama"):
         place_of(fresh_blend.context.scene)
+
+
+def test_two_scenes_have_a_place_each(fresh_blend, place, tmp_path):
+    """What the second one makes leaves the first one's materials, maps and World alone."""
+    from expanded_panoramas.cycles_integration import lookup, materials, world
+
+    scene, here = place
+    made = []
+    for current in (scene, fresh_blend.data.scenes.new("other")):
+        if current != scene:
+            fresh_blend.context.window.scene = current
+            _, here = panoramas.room_place(fresh_blend, panoramas.constant_panorama(tmp_path / "c.exr", 1))
+        tree = lookup.build_lookup(here)
+        materials.assign(current, here)
+        images = {node.image for node in tree.nodes if node.bl_idname == "ShaderNodeTexEnvironment"}
+        made.append({tree, world.build_world(current, here), here.origin, *images})
+        made[-1] |= {slot.material for o in here.surfaces.all_objects for slot in o.material_slots}
+    assert len(made[0]) == len(made[1]) == 6
+    assert not made[0] & made[1]
