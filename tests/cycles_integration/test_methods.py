@@ -65,6 +65,17 @@ def test_objects_appear_and_darken_the_floor(prepared, tmp_path, method):
     assert change[12:20, 20:32].min() < -0.05
 
 
+@pytest.mark.parametrize("method", ["catcher", "single", "difference"])
+def test_real_surfaces_hide_what_is_behind_them(prepared, tmp_path, method):
+    """Table 5.1: a new object outside the room is not seen, and neither lights nor shades it."""
+    scene, camera = prepared
+    settings = {"method": method, "samples": 4}
+    without = render(scene, camera, tmp_path / "without.exr", **settings)
+    for thing in add_objects(scene):
+        thing.location.x += 5
+    assert np.abs(render(scene, camera, tmp_path / "with.exr", **settings) - without).max() < EXACT
+
+
 def photograph_without_objects(scene, camera, tmp_path):
     hide_objects(scene)
     return photograph(scene, camera, tmp_path / "photograph.exr")
