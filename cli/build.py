@@ -1,6 +1,7 @@
 """`panorama build SET -o SCENE.blend`: the place as a Blender file, ready for objects."""
 
 import os
+from pathlib import Path
 
 from ..ibl_toolkit.images import replacing
 from . import blender
@@ -33,7 +34,7 @@ def build_scene(set_path, output, progress=None):
         with progress.step("preparing"):
             preparation.prepare(scene)
         with progress.step("writing"):
-            _save(output, made.image)
+            _save(Path(output), made.image)
     return {"shapes": [piece.to_json() for piece in pieces]}
 
 

@@ -15,6 +15,7 @@ SUMMARY = "render objects into the place: through a camera, or the whole panoram
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "OUT.exr", ".exr", True
 METHODS = ("catcher", "single", "difference", "directional")
 PANORAMA = "panorama"
+MOST_PIXELS, MOST_SAMPLES = 65536, 2**24  # of Blender
 
 
 @dataclass(frozen=True)
@@ -43,14 +44,11 @@ def add_options(parser):
     add("--camera", metavar="NAME|panorama", help="a camera of the objects' scene (default: its active one)")
     add("--method", choices=METHODS, default=METHODS[0], help="how objects and photograph meet")
     add("--lights", metavar="auto|none|N", type=light_limit, help="most lights to take out of the map (auto)")
-    add(
-        "--width",
-        metavar="W",
-        type=whole_number(4),
-        help="[px] (default: the objects' scene's; photograph's)",
-    )
-    add("--height", metavar="H", type=whole_number(4), help="[px] (default: follows from the width)")
-    add("--samples", metavar="N", type=whole_number(1), default=64, help="paths per pixel (default: 64)")
+    pixels = whole_number(4, MOST_PIXELS)
+    add("--width", metavar="W", type=pixels, help="[px] (default: the objects' scene's; photograph's)")
+    add("--height", metavar="H", type=pixels, help="[px] (default: follows from the width)")
+    paths = whole_number(1, MOST_SAMPLES)
+    add("--samples", metavar="N", type=paths, default=64, help="paths per pixel (default: 64)")
     add("--seed", metavar="S", type=whole_number(0), default=0, help="another gives other noise (default: 0)")
     add("--denoise", action="store_true", help="remove noise, and some detail with it")
     add("--frames", metavar="A-B[,STEP]", type=frame_range, help="frames; #### in OUT.exr is their number")
@@ -69,7 +67,7 @@ def render_set(set_path, output, options=None, progress=None):
     """
     options, progress = options or RenderOptions(), progress or Progress()
     job = open_job(set_path)
-    objects = options.objects or job.set.objects
+    objects = Path(options.objects) if options.objects else job.set.objects
     paths = _output_paths(output, options.frames, (job.set.image, objects))
     if objects is not None and not objects.is_file():
         raise ValueError(f"{job.path}: objects: {objects}: no such file")
@@ -97,7 +95,9 @@ def _append(scene, objects):
     from ..cycles_integration.objects_file import append_objects
 
     with blender.errors_of(objects):
-        return append_objects(scene, objects)
+        appended = append_objects(scene, objects)
+    scene.frame_set(appended.frame)
+    return appended
 
 
 @contextmanager

@@ -26,7 +26,7 @@ def test_build_writes_the_place_with_roles_origin_and_world(fresh_blend, room, p
     bpy.ops.wm.open_mainfile(filepath=str(room / "scenes" / "room.blend"))
     scene = bpy.context.scene
     assert scene.objects["floor"].panorama_role == "SUPPORT"
-    assert scene.objects["walls"].data.materials[0].name == "Panorama Environment"
+    assert scene.objects["walls"].data.materials[0].name.startswith("Panorama Environment")
     assert scene.panorama_place.origin.matrix_world.translation.z == pytest.approx(1.5)
     assert scene.world.name.startswith("Panorama World")
     assert scene.panorama_place.image.filepath == "//../room.exr"
@@ -49,6 +49,17 @@ def test_depth_writes_the_map_and_prints_its_extremes(fresh_blend, room, panoram
     assert result["farthest"] == pytest.approx(float(written.depth.max()))
     assert float(written.depth[-1].mean()) == pytest.approx(1.5, abs=METRES)  # straight down
     assert np.isfinite(written.depth).all()
+
+
+def test_a_large_map_is_rendered_in_strips_that_fit(fresh_blend, room, panorama, monkeypatch):
+    from expanded_panoramas.cycles_integration import capture
+
+    command = ["depth", room / "room.json", "--width", 204, "-o"]  # 102 rows, which 8 does not divide
+    assert panorama(*command, room / "whole.exr")[0] == 0
+    monkeypatch.setattr(capture, "STRIP_PIXELS", 3000)
+    assert panorama(*command, room / "strips.exr")[0] == 0
+    whole, strips = (read_rgbd(room / f"{name}.exr").depth for name in ("whole", "strips"))
+    np.testing.assert_allclose(strips, whole, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

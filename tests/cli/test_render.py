@@ -1,6 +1,7 @@
 """`render`: every method and camera, frame ranges that go on where they stopped, and what is refused."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import OpenEXR
@@ -83,10 +84,24 @@ def test_roles_of_the_objects_file_and_what_it_leaves_out_are_honoured(room_with
 
 
 def test_as_a_function(room_with_objects):
-    options = RenderOptions(samples=1, width=24, lights=0)
-    result = render_set(room_with_objects / "room.json", room_with_objects / "out.exr", options)
+    room = room_with_objects
+    options = RenderOptions(objects=str(room / "objects.blend"), samples=1, width=24, lights=0)
+    result = render_set(str(room / "room.json"), str(room / "out.exr"), options)
     assert result["lights"] == 0
-    assert read(room_with_objects / "out.exr").shape == (14, 24, 3)
+    assert read(room / "out.exr").shape == (14, 24, 3)
+
+
+def test_without_frames_the_files_current_frame_is_rendered(room_with_objects):
+    import bpy
+
+    room = room_with_objects
+    options = RenderOptions(samples=1, camera="Side", width=24)
+    bpy.ops.wm.open_mainfile(filepath=str(room / "objects.blend"))
+    bpy.context.scene.frame_set(5)
+    bpy.ops.wm.save_as_mainfile(filepath=str(room / "last.blend"))
+    render_set(room / "room.json", room / "now.exr", replace(options, objects=room / "last.blend"))
+    render_set(room / "room.json", room / "frame_#.exr", replace(options, frames=range(5, 6)))
+    assert np.array_equal(read(room / "now.exr"), read(room / "frame_5.exr"))
 
 
 @pytest.mark.parametrize(
@@ -98,7 +113,7 @@ def test_as_a_function(room_with_objects):
         (["--camera", "panorama", "--width", "64", "--height", "64"], ["twice as wide as high"]),
         (["--method", "magic"], ["--method", "catcher"]),
         (["--lights", "many"], ["--lights", "auto, none or a number"]),
-        (["--samples", "0"], ["--samples", "at least 1"]),
+        (["--samples", "0"], ["--samples", "1 to 16777216"]),
         (["--frames", "5-1"], ["--frames", "A ≤ B"]),
         (["--frames", "1-5,0"], ["--frames", "step"]),
         (["--frames", "1-5"], ["out.exr", "one name for 5 frames"]),
