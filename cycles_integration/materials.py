@@ -6,12 +6,12 @@ import bpy
 
 from . import lookup, roles
 from .lookup import DIFFUSE_LIGHT, GLOSS, IRRADIANCE, PHOTOGRAPH
-from .node_trees import add, vector_maths
+from .node_trees import add, maths, vector_maths
 from .place import Place, own_name
 
 MOST_ALBEDO = 0.9
 """A real surface reflects no more; what the photograph shows beyond that is taken as its own light."""
-LEAST_IRRADIANCE = 1e-4
+LEAST_IRRADIANCE, LEAST_GLOSS = 1e-4, 1e-6
 
 
 def environment_material(place: Place) -> bpy.types.Material:
@@ -28,12 +28,15 @@ def support_material(place: Place) -> bpy.types.Material:
     With E the irradiance that the place throws on the point and S the reflection that the panorama saw there,
     A = (M − S)·π/E is the albedo that makes the lit surface show M; darker where light is blocked, brighter
     where it bounces. It replaces the factor ES of eq. 5.11, whose light has neither distance nor emitter
-    cosine.
+    cosine. Where the reflectivity asked for would mirror more than the photograph shows, it is lowered, for
+    all colours alike.
     """
     material = _emptied(place, "Panorama Support")
     tree = material.node_tree
     photograph, irradiance = lookup.lookup(place, tree, PHOTOGRAPH), lookup.lookup(place, tree, IRRADIANCE)
-    diffuse_part = vector_maths(tree, "SUBTRACT", photograph, lookup.lookup(place, tree, GLOSS))
+    gloss = lookup.lookup(place, tree, GLOSS)
+    possible = _possible_share(tree, gloss, photograph)
+    diffuse_part = vector_maths(tree, "SUBTRACT", photograph, vector_maths(tree, "MULTIPLY", gloss, possible))
     floor = vector_maths(tree, "MAXIMUM", irradiance, (LEAST_IRRADIANCE,) * 3)
     albedo = vector_maths(tree, "DIVIDE", diffuse_part, floor)
     albedo = vector_maths(
@@ -45,7 +48,7 @@ def support_material(place: Place) -> bpy.types.Material:
     own_light = vector_maths(tree, "MAXIMUM", own_light, (0, 0, 0))
     diffuse = add(tree, "ShaderNodeBsdfDiffuse", {"Color": albedo}).outputs[0]
     lit = _sum(tree, diffuse, _emission(tree, own_light))
-    _surface(material, _sum(tree, lit, _reflection(tree)))
+    _surface(material, _sum(tree, lit, _reflection(tree, possible)))
     return material
 
 
@@ -103,9 +106,19 @@ def _probe(place, name, seen_by_camera):
     return material
 
 
-def _reflection(tree):
+def _possible_share(tree, gloss, photograph):
+    """The largest share, at most 1, of the gloss that leaves no colour of the photograph negative."""
+    ratios = vector_maths(
+        tree, "DIVIDE", photograph, vector_maths(tree, "MAXIMUM", gloss, (LEAST_GLOSS,) * 3)
+    )
+    red, green, blue = add(tree, "ShaderNodeSeparateXYZ", {"Vector": ratios}).outputs
+    least = maths(tree, "MINIMUM", maths(tree, "MINIMUM", red, green), blue)
+    return maths(tree, "MAXIMUM", maths(tree, "MINIMUM", least, 1.0), 0.0)
+
+
+def _reflection(tree, share=1.0):
     """The support's gloss, from the object's own properties."""
-    reflectivity = _object_property(tree, "panorama_reflectivity")
+    reflectivity = maths(tree, "MULTIPLY", _object_property(tree, "panorama_reflectivity"), share)
     return add(
         tree,
         "ShaderNodeBsdfAnisotropic",

@@ -136,3 +136,21 @@ def add_glowing_board(bpy, scene):
     board = bpy.data.objects.new("board", mesh)
     board.visible_diffuse = False
     scene.collection.objects.link(board)
+
+
+def test_a_support_mirrors_no_more_than_the_photograph_shows(fresh_blend, tmp_path):
+    """A dark red floor in a bright grey room, asked to mirror half of it, still shows its dark red."""
+    from expanded_panoramas.cycles_integration import preparation
+
+    image = np.full((32, 64, 3), 0.8, np.float32)
+    image[17:] = (0.2, 0.02, 0.02)
+    scene, _ = panoramas.room_place(fresh_blend, panoramas.write_panorama(tmp_path / "red.exr", image))
+    fresh_blend.data.objects["floor"].panorama_reflectivity = 0.5
+    camera = add_camera(scene)
+    preparation.prepare(scene)
+    picture = render(scene, camera, tmp_path / "picture.exr", method="single", samples=32)
+    expected = photograph(scene, camera, tmp_path / "photograph.exr")
+    floor = (slice(20, 27), slice(24, 40))
+    assert np.allclose(
+        picture[floor].mean(axis=(0, 1)), expected[floor].mean(axis=(0, 1)), rtol=0.1, atol=0.01
+    )
