@@ -1,6 +1,5 @@
 """Blender for a job: an empty file with the package registered, in a Python with bpy or in Blender itself."""
 
-import atexit
 from contextlib import contextmanager
 from importlib import import_module
 
@@ -21,19 +20,25 @@ def empty_scene(progress):
         ) from missing
     # The user's add-ons stay as they are: read_factory_settings would take this one away while it runs.
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    _register_once(bpy)
-    with _reporting(bpy.app.handlers, progress):
+    with _registered(bpy), _reporting(bpy.app.handlers, progress):
         yield bpy.context.scene
 
 
-def _register_once(bpy):
+@contextmanager
+def _registered(bpy):
+    """The package registered, unless a Blender has done it; taken back, or bpy 4.5 hangs as it exits."""
     if hasattr(bpy.types.Scene, "panorama_place"):
+        yield
         return
-    for name in ROOMS:
-        if name != "cli":  # whose register makes the command known to a Blender
-            room = import_module(f"..{name}", __package__)
-            room.register()
-            atexit.register(room.unregister)  # else bpy 4.5 hangs as it exits
+    names = [name for name in ROOMS if name != "cli"]  # its register makes the command known to a Blender
+    rooms = [import_module(f"..{name}", __package__) for name in names]
+    for room in rooms:
+        room.register()
+    try:
+        yield
+    finally:
+        for room in reversed(rooms):
+            room.unregister()
 
 
 @contextmanager

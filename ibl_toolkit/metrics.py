@@ -72,3 +72,12 @@ def white_dots(image: np.ndarray) -> np.ndarray:
     around = [padded[i : i + height, j : j + width] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
     second = np.sort(around, axis=0)[-2]
     return luminance > WHITE_DOT * np.maximum(second, 1e-3)
+
+
+def new_white_dots(image: np.ndarray, truth: np.ndarray) -> np.ndarray:
+    """Return the white dots (H, W) that the truth has not: nothing half as bright within two pixels there.
+
+    A lamp that a mirror ball shows as one pixel is no defect.
+    """
+    brightest_near = cv2.dilate((truth @ LUMINANCE).astype(np.float32), np.ones((5, 5), np.uint8))
+    return white_dots(image) & (image @ LUMINANCE > 2 * brightest_near)

@@ -178,7 +178,7 @@ def difference(image, photograph, mask) -> dict:
 
 def new_dots(image, before) -> int:
     """White dots of a picture that are not in the one without objects."""
-    return int(np.count_nonzero(metrics.white_dots(image) & ~metrics.white_dots(before)))
+    return int(np.count_nonzero(metrics.new_white_dots(image, before)))
 
 
 def read_picture(path) -> np.ndarray:

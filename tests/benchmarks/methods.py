@@ -88,7 +88,7 @@ def measure(lamps, panorama, truth, empty, run):
         "denoised": denoise,
         "psnr_changed_db": round(metrics.psnr(picture, truth.with_objects, changed), 2),
         "psnr_unchanged_db": round(metrics.psnr(picture, empty, unchanged), 2),
-        "white_dots": int((metrics.white_dots(picture) & ~metrics.white_dots(truth.with_objects)).sum()),
+        "white_dots": int(metrics.new_white_dots(picture, truth.with_objects).sum()),
         "prepare_seconds": round(ready - start, 1),
         "render_seconds": round(done - ready, 1),
     }

@@ -40,3 +40,11 @@ def test_white_dots_are_counted_but_lamps_are_not():
     picture[10:14, 10:14] = 20
     dots = metrics.white_dots(picture)
     assert {tuple(index) for index in np.argwhere(dots).tolist()} == {(5, 5), (20, 31)}
+
+
+def test_a_mirrored_lamp_is_no_new_dot():
+    truth = np.full((32, 32, 3), 0.1)
+    truth[8, 8] = 20
+    picture = np.full((32, 32, 3), 0.1)
+    picture[9, 8] = picture[20, 20] = 20
+    assert np.argwhere(metrics.new_white_dots(picture, truth)).tolist() == [[20, 20]]
