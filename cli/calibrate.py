@@ -19,7 +19,7 @@ def run(set_path, output, _options, progress):
 
 
 def calibrate_set(set_path, output=None, progress=None):
-    """Calibrate a set -> a dict as SET.md has it; also written to `output` (.json) where given."""
+    """Calibrate a set -> a dict, the result of --json; also written to `output` (.json) where given."""
     job = open_job(set_path)
     result = job.calibration.to_json()
     if output is not None:

@@ -18,7 +18,7 @@ from .uncertainty import propagate
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """Orientation and scale of a panorama in the world of CONVENTIONS.md.
+    """Orientation and scale of a panorama in the world of a set: metres, z up, the floor at z = 0.
 
     world_from_panorama (3, 3). camera_height [m]. tilt_deg: angle between the panorama's top and the world's.
     residual_deg: root mean square angle by which the clicks were corrected. uncertainty_*: one standard
@@ -60,7 +60,7 @@ class Calibration:
         return self.camera_height * floor_points(directions, self.world_from_panorama)
 
     def to_json(self):
-        """What `panorama calibrate --json` prints (SET.md)."""
+        """What `panorama calibrate --json` prints."""
         return {
             "world_from_panorama": self.world_from_panorama.tolist(),
             "camera_height": self.camera_height,
@@ -84,7 +84,7 @@ def calibrate(picks, image_size):
     the first floor rectangle gives the world's +x (without one the parallels, a ceiling, a wall).
 
     Raises: CalibrationError, naming the pick, for anything that would give no or no trustworthy answer.
-    Source: thesis section 5.4, eq. 5.2 as the start value; signs by ERRATA.
+    Source: thesis section 5.4, eq. 5.2 as the start value; its signs taken so that the floor lies below.
 
     >>> from expanded_panoramas.ibl_toolkit.calibration import CalibrationPicks, Rectangle
     >>> corners = [[0.5738, 0.7323], [0.4262, 0.7323], [0.4737, 0.6011], [0.5263, 0.6011]]

@@ -115,7 +115,7 @@ def click_tangents(directions, width, height):
     """How far half a pixel moves a direction, (..., 3) -> (..., 3, 2) [rad]: sideways, and upwards.
 
     Half a column is CLICK_ERROR_PIXELS · 2π/width · cos θ, half a row CLICK_ERROR_PIXELS · π/height.
-    Source: derivative of CONVENTIONS' ω(u, v); thesis appendix A.
+    Source: derivative of ω(u, v), thesis appendix A.
 
     >>> import numpy as np
     >>> t = click_tangents(np.array([1.0, 0.0, 0.0]), 2000, 1000)

@@ -27,7 +27,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 CHARTS, CACHE = ROOT / "docs" / "charts", ROOT / "out" / "bench"
 PANORAMA_WIDTH, PANORAMA_SAMPLES = 1024, 128
 WIDTH, HEIGHT, SAMPLES = 480, 270, 64
-TRUTH_SAMPLES = 384
+TRUTH_SAMPLES = 512
 RUNS = (  # method, most lights, denoised
     (DIRECTIONAL, None, False),
     (SINGLE, 0, False),
