@@ -1,4 +1,7 @@
-"""`panorama build SET -o SCENE.blend`: the place as a Blender file, ready for objects."""
+"""`panorama build SET -o SCENE.blend`: the place as a Blender file, ready for objects.
+
+Of an RGB-D panorama (`panorama build MAP.exr …`) the depth becomes the one surface.
+"""
 
 import os
 from pathlib import Path
@@ -8,6 +11,7 @@ from . import blender
 from .job import open_job, place_in, rebuild, refuse_output
 from .progress import Progress
 
+INPUT = "panorama set (.json), or an RGB-D panorama (.exr)"
 SUMMARY = "rebuild the place as a Blender file: meshes with roles and materials, origin, world"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "SCENE.blend", ".blend", True
 
@@ -22,20 +26,39 @@ def run(set_path, output, _options, progress):
 
 
 def build_scene(set_path, output, progress=None):
-    """Write the .blend of a set's place, prepared for rendering -> {"shapes": [...]}, sizes in metres."""
+    """Write the .blend of a place, prepared for rendering -> {"shapes": [...]}, sizes in metres.
+
+    set_path: a panorama set, or an RGB-D panorama (.exr).
+    """
     progress = progress or Progress()
-    job = open_job(set_path)
-    refuse_output(output, ".blend", (job.set.objects,))
-    pieces = rebuild(job)
+    make_place = _from_depth(set_path) if Path(set_path).suffix == ".exr" else _from_set(set_path, output)
+    refuse_output(output, ".blend", ())
     with blender.empty_scene(progress) as scene:
         from ..cycles_integration import preparation
 
-        made = place_in(scene, job, pieces)
+        made, pieces = make_place(scene)
         with progress.step("preparing"):
             preparation.prepare(scene)
         with progress.step("writing"):
             _save(Path(output), made.image)
     return {"shapes": [piece.to_json() for piece in pieces]}
+
+
+def _from_set(path, output):
+    job = open_job(path)
+    refuse_output(output, ".blend", (job.set.objects,))
+    pieces = rebuild(job)
+    return lambda scene: (place_in(scene, job, pieces), pieces)
+
+
+def _from_depth(path):
+    def make_place(scene):
+        from ..cycles_integration.rgbd_place import load_rgbd
+
+        loaded = load_rgbd(scene, path)
+        return loaded.place, [loaded.piece]
+
+    return make_place
 
 
 def _save(path, image):

@@ -5,6 +5,7 @@ import json
 from ..ibl_toolkit.images import replacing
 from .job import open_job, refuse_output
 
+INPUT = "panorama set (.json)"
 SUMMARY = "solve orientation and scale from the picks"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "RESULT.json", "_calibration.json", False
 

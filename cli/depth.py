@@ -10,6 +10,7 @@ from .job import open_job, place_in, rebuild, refuse_output
 from .options import whole_number
 from .progress import Progress
 
+INPUT = "panorama set (.json)"
 SUMMARY = "write the RGB-D panorama: image and ray distance of the rebuilt place"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "MAP.exr", "_depth.exr", True
 

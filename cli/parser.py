@@ -27,7 +27,7 @@ def parser():
     verbs = _verbs_of(root, "verb")
     for name, module in VERBS.items():
         verb = verbs.add_parser(name, help=module.SUMMARY, description=_sentence(module.SUMMARY))
-        verb.add_argument("set", metavar="SET", type=Path, help="panorama set (.json)")
+        verb.add_argument("set", metavar="SET", type=Path, help=module.INPUT)
         verb.add_argument(
             "-o",
             "--output",

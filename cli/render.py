@@ -11,6 +11,7 @@ from .job import naming, open_job, place_in, rebuild, refuse_output
 from .options import frame_range, light_limit, whole_number
 from .progress import Progress
 
+INPUT = "panorama set (.json)"
 SUMMARY = "render objects into the place: through a camera, or the whole panorama"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "OUT.exr", ".exr", True
 METHODS = ("catcher", "single", "difference", "directional")

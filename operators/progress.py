@@ -73,11 +73,10 @@ def camera_missing(scene) -> str:
 def next_step(scene) -> str:
     """The next thing to do, in one line."""
     state = scene.panorama_set
-    for number, missing in enumerate((image_missing(scene), picks_missing(scene)), 1):
-        if missing:
-            return f"Step {number}: {missing}"
+    if image_missing(scene):
+        return f"Step 1: {image_missing(scene)}"
     if calibration_missing(scene) or state.calibration_is_old:
-        return "Step 2: Calibrate"
+        return f"Step 2: {picks_missing(scene) or 'Calibrate'}"
     if not roles.real_objects(scene) or state.shapes_are_old:
         return f"Step 3: {shapes_missing(scene) or 'Build the shapes'}"
     if not new_objects(scene):

@@ -4,6 +4,7 @@ import bpy
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..cycles_integration.objects_file import append_objects
+from ..cycles_integration.rgbd_place import load_rgbd
 from ..ibl_toolkit.panorama_set import read_set, write_set
 from . import conversion, progress, solving
 from .reporting import Reporting, possible
@@ -25,6 +26,29 @@ class PANORAMA_OT_load_image(Reporting, ImportHelper, bpy.types.Operator):
         state.calibration_is_old = state.result.is_solved
         show_in_image_editors(context, image)
         return f"{image.name}: {image.size[0]} × {image.size[1]} pixels"
+
+
+class PANORAMA_OT_load_rgbd(Reporting, ImportHelper, bpy.types.Operator):
+    """Open a panorama with depth (.exr, as "Render Depth" writes it): calibrated, its depth as a surface"""
+
+    bl_idname = "panorama.load_rgbd"
+    bl_label = "Open RGB-D Panorama"
+
+    filename_ext = ".exr"
+    filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
+
+    def work(self, context):
+        """Make the place of the file; picks and shapes of the scene go, since the file needs none."""
+        scene, state = context.scene, context.scene.panorama_set
+        loaded = load_rgbd(scene, self.filepath)
+        state.picks.clear()
+        state.shapes.clear()
+        state.image, state.image_path = loaded.place.image, self.filepath
+        state.result.camera_height, state.result.is_solved = loaded.camera_height, True
+        state.calibration_is_old, state.maps_are_old = False, True
+        show_in_image_editors(context, loaded.place.image)
+        faces, error = len(loaded.surface.mesh.faces), 100 * loaded.surface.median_error
+        return f"{faces} faces, half of them within {error:.2g} % of the depth"
 
 
 class PANORAMA_OT_import_set(Reporting, ImportHelper, bpy.types.Operator):
@@ -100,6 +124,7 @@ def show_in_image_editors(context, image):
 
 classes = (
     PANORAMA_OT_load_image,
+    PANORAMA_OT_load_rgbd,
     PANORAMA_OT_import_set,
     PANORAMA_OT_export_set,
     PANORAMA_OT_append_objects,

@@ -38,6 +38,7 @@ class PANORAMA_PT_image(Step, bpy.types.Panel):
             figure(self.layout, Path(state.image_path).name, size)
         column = self.layout.column(align=True)
         column.operator("panorama.load_image", text="Open Panorama...", icon="FILE_FOLDER")
+        column.operator("panorama.load_rgbd", text="Open RGB-D Panorama...", icon="FILE_3D")
         row = column.row(align=True)
         row.operator("panorama.import_set", text="Import Set...", icon="IMPORT")
         row.operator("panorama.export_set", text="Export Set...", icon="EXPORT")

@@ -104,3 +104,13 @@ def test_a_damaged_image_leaves_no_map(fresh_blend, room, panorama):
     assert (status, len(err)) == (2, 1)
     assert "room.exr: truncated" in err[0]
     assert sorted(path.name for path in room.iterdir()) == ["room.exr", "room.json"]
+
+
+def test_an_rgbd_map_builds_a_scene_of_its_own(fresh_blend, room, panorama):
+    assert panorama("depth", room / "room.json", "-o", room / "map.exr")[0] == 0
+    status, out, _ = panorama("build", room / "map.exr", "-o", room / "scene.blend", "--json")
+    assert status == 0
+    (shape,) = json.loads(out)["shapes"]
+    assert (shape["kind"], shape["role"]) == ("depth", "ENVIRONMENT")
+    assert np.allclose(shape["size"], (5, 4, 2.7), atol=0.1)
+    assert panorama("build", room / "room.exr", "-o", room / "none.blend")[0] == 2

@@ -197,3 +197,16 @@ def test_undo_and_redo(fresh_blend, tmp_path):
     assert bpy.data.objects["floor"].panorama_role == "SUPPORT"
     bpy.context.scene.panorama_set.camera_height = 2.0
     assert bpy.context.scene.panorama_place.origin.location.z == pytest.approx(2.0)
+
+
+def test_a_map_with_depth_is_read_back_as_a_place(fresh_blend, tmp_path):
+    """Written by one scene, opened by another: calibrated, with the depth as its surface, ready to prepare."""
+    bpy = fresh_blend
+    built(bpy, tmp_path)
+    bpy.ops.panorama.export_depth(filepath=str(tmp_path / "map.exr"))
+    bpy.context.window.scene = bpy.data.scenes.new("other")
+    assert bpy.ops.panorama.load_rgbd(filepath=str(tmp_path / "map.exr")) == {"FINISHED"}
+    scene = bpy.context.scene
+    assert [o.panorama_role for o in scene.panorama_place.surfaces.all_objects] == ["ENVIRONMENT"]
+    assert bpy.ops.panorama.prepare.poll()
+    assert scene.panorama_place.origin.location.z == pytest.approx(1.5, abs=1e-3)
