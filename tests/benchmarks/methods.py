@@ -29,7 +29,7 @@ PANORAMA_WIDTH, PANORAMA_SAMPLES = 1024, 128
 WIDTH, HEIGHT, SAMPLES = 480, 270, 64
 TRUTH_SAMPLES = 512
 RUNS = (  # method, most lights, denoised
-    (DIRECTIONAL, None, False),
+    (DIRECTIONAL, 0, False),
     (SINGLE, 0, False),
     (SINGLE, None, False),
     (DIFFERENCE, 0, False),
@@ -57,6 +57,7 @@ def main():
             print(row)
             if run in SHOWN:
                 pictures[lamps, label(run)] = picture
+        compare_times([row for row in rows if row["lamps"] == lamps])
     sheet(pictures)
     document = {
         "cores": os.cpu_count(),
@@ -93,6 +94,13 @@ def measure(lamps, panorama, truth, empty, run):
         "render_seconds": round(done - ready, 1),
     }
     return row, picture
+
+
+def compare_times(rows):
+    """Add each row's render time as a ratio to the default's: seconds depend on the machine and its load."""
+    default = next(r for r in rows if r["method"] == CATCHER and r["lights"] and not r["denoised"])
+    for row in rows:
+        row["render_ratio"] = round(row["render_seconds"] / default["render_seconds"], 2)
 
 
 def photograph(panorama, lamps):
