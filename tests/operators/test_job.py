@@ -200,7 +200,7 @@ def test_undo_and_redo(fresh_blend, tmp_path):
 
 
 def test_a_map_with_depth_is_read_back_as_a_place(fresh_blend, tmp_path):
-    """Written by one scene, opened by another: calibrated, with the depth as its surface, ready to prepare."""
+    """Written by one scene, opened by another: calibrated, its depth as its surface, ready to prepare."""
     bpy = fresh_blend
     built(bpy, tmp_path)
     bpy.ops.panorama.export_depth(filepath=str(tmp_path / "map.exr"))
