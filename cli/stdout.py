@@ -11,14 +11,14 @@ _STDOUT = 1
 @contextmanager
 def kept_for_results():
     """While the block runs, nothing reaches the process's stdout, from C or from Python."""
-    _flush()
+    flush()
     kept = os.dup(_STDOUT)
     silence()
     try:
         with open(os.devnull, "w") as nowhere, redirect_stdout(nowhere):  # which may have another descriptor
             yield
     finally:
-        _flush()
+        flush()
         os.dup2(kept, _STDOUT)
         os.close(kept)
 
@@ -30,8 +30,8 @@ def silence():
     os.close(nowhere)
 
 
-def _flush():
-    """C has a buffer of its own, which would be written whenever it is full."""
+def flush():
+    """Write out what is buffered: C has a buffer of its own, which would be written whenever it is full."""
     sys.stdout.flush()
     library = "ucrtbase" if sys.platform == "win32" else None
     ctypes.CDLL(library).fflush(None)

@@ -73,9 +73,10 @@ def change_set(path, **keys):
 @pytest.fixture
 def panorama(capfd):
     """The command in this process: panorama(*arguments) -> exit status, stdout, lines of stderr."""
-    from expanded_panoramas.cli import main
+    from expanded_panoramas.cli import main, stdout
 
     def run(*arguments):
+        stdout.flush()  # what Blender printed before belongs to whoever made it print
         capfd.readouterr()
         try:
             status = main([str(argument) for argument in arguments])
