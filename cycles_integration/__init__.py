@@ -1,5 +1,4 @@
-"""Turns results into Blender data and pictures: roles, materials, lights, maps, render set-up,
-compositing."""
+"""Results as Blender data and pictures: roles, materials, lights, maps, render set-up, compositing."""
 
 from . import place, roles
 

@@ -18,8 +18,7 @@ SUPPORT_INDEX = 1
 
 @dataclass(frozen=True)
 class DepthMap:
-    """Ray distances (H, W) [m] from the panorama's origin, +inf where nothing is, and where the support is
-    seen."""
+    """Ray distances (H, W) [m] from the origin, +inf where nothing is, and where the support is seen."""
 
     depth: np.ndarray
     is_support: np.ndarray

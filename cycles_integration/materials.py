@@ -15,8 +15,7 @@ LEAST_IRRADIANCE, LEAST_GLOSS = 1e-4, 1e-6
 
 
 def environment_material(place: Place) -> bpy.types.Material:
-    """Emit the photograph; to paths after a diffuse bounce, what the extracted lights leave of it (eq.
-    5.8)."""
+    """Emit the photograph (eq. 5.8); after a diffuse bounce, what the extracted lights leave of it."""
     material = _emptied(place, "Panorama Environment")
     _surface(material, _emission(material.node_tree, lookup.lookup(place, material.node_tree, DIFFUSE_LIGHT)))
     return material
@@ -67,8 +66,7 @@ def black_material(place: Place) -> bpy.types.Material:
 
 
 def irradiance_material(place: Place) -> bpy.types.Material:
-    """White and diffuse where the camera looks, the place's light everywhere else: the camera then sees
-    E/π."""
+    """White and diffuse where the camera looks, the place's light elsewhere: the camera sees E/π."""
     return _probe(
         place,
         "Panorama Irradiance",

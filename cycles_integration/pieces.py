@@ -1,5 +1,4 @@
-"""The rebuilt surfaces as Blender objects, brought up to date in place: identity, modifiers and children
-stay."""
+"""The rebuilt surfaces as Blender objects; brought up to date, they stay the objects they were."""
 
 from __future__ import annotations
 

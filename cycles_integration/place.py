@@ -66,8 +66,7 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
 
 
 def own_name(place: Place, name: str) -> str:
-    """Return the name of a data-block of this place alone: a file may hold several scenes with a place
-    each."""
+    """Return the name of a data-block of this place alone: a file may hold several places."""
     return f"{name} ({place.id_data.name})"
 
 
@@ -83,11 +82,11 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
     View layers leave out whole collections, never single objects; so roles have collections of their own.
     """
     collections = {roles.SUPPORT: place.support, roles.ENVIRONMENT: place.environment}
-    for thing in scene.objects:
+    for thing in list(scene.objects):
         if thing.type == "MESH" and thing.panorama_role in collections:
             _move(thing, collections[thing.panorama_role])
     ours = {place.collection, *place.collection.children_recursive}
-    for thing in scene.objects:
+    for thing in list(scene.objects):
         if thing.type != "MESH" or thing.panorama_role == roles.SYNTHETIC:
             stray = set(thing.users_collection) <= ours | {scene.collection}
             if (

@@ -74,8 +74,7 @@ def write_render(scene: bpy.types.Scene, path: Path):
 
 @contextlib.contextmanager
 def panorama_camera(scene: bpy.types.Scene):
-    """The camera that renders the whole panorama, in the photograph's own frame, for as long as it is
-    needed."""
+    """The camera of the whole panorama, in the photograph's own frame, for as long as it is needed."""
     camera = capture.panorama_camera(place_of(scene))
     scene.collection.objects.link(camera)
     data = camera.data

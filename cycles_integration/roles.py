@@ -1,5 +1,4 @@
-"""What an object is to the composite: new, real and interacting, or real and only lighting (section
-5.6.1)."""
+"""What an object is to the composite: new, real and touched, or real and only lighting (5.6.1)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""An RGB-D panorama as one closed mesh: a light map with depth has its light where it comes from (section
-5.1)."""
+"""An RGB-D panorama as one closed mesh: its light then comes from where it is (section 5.1)."""
 
 from __future__ import annotations
 

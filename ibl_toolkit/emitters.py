@@ -159,8 +159,7 @@ class _Samples:
 
 
 def _normals(points: np.ndarray) -> np.ndarray:
-    """Unit normals (H, W, 3) of a map of points, towards the origin, from the nearer neighbour on either
-    side."""
+    """Unit normals (H, W, 3) of a map of points, towards the origin, from each side's nearer neighbour."""
     distances = np.linalg.norm(points, axis=2)
 
     def step(axis):
@@ -177,8 +176,7 @@ def _normals(points: np.ndarray) -> np.ndarray:
 
 
 def _components(mask: np.ndarray) -> tuple[np.ndarray, int]:
-    """Connected regions (8 neighbours) of a map, joined across the seam; labels from 1, and their count +
-    1."""
+    """Connected regions (8 neighbours), joined across the seam: labels from 1, and their count + 1."""
     _, labels = cv2.connectedComponents(mask.astype(np.uint8), connectivity=8)
     for row in np.flatnonzero(mask[:, 0]):
         for neighbour in labels[max(row - 1, 0) : row + 2, -1]:
@@ -204,8 +202,7 @@ def _dilated(mask, pixels):
 
 
 def _flat_parts(samples: _Samples, splits_left: int) -> list[_Samples]:
-    """Halve a region, by its two main normals or else along its longest side, until each part fits a
-    rectangle."""
+    """Halve a region, by its two main normals or along its longest side, until rectangles fit."""
     centre, axes, lengths = _frame(samples)
     flat = samples.solid_angles @ (samples.normals @ axes[:, 2]) > FLATNESS * samples.solid_angles.sum()
     filled = samples.areas.sum() > FILLING * lengths[0] * lengths[1]
@@ -225,8 +222,7 @@ def _nearer_first_normal(samples: _Samples, mean_normal: np.ndarray) -> np.ndarr
 
 
 def _frame(samples: _Samples):
-    """Middle (3,), axes (3, 3) as columns (longest side, other side, normal), and the lengths (2,) of equal
-    spread."""
+    """Middle (3,), axes (3, 3) as columns (long side, other side, normal), lengths (2,) of equal spread."""
     areas = samples.areas
     centre = areas @ samples.points / areas.sum()
     normal = samples.solid_angles @ samples.normals

@@ -10,8 +10,7 @@ from .emitters import LUMINANCE
 VISIBLE = 0.02
 """Display values that differ by more than this count as changed."""
 WHITE_DOT = 10.0
-"""A pixel this many times as bright as the brightest of its neighbours, the next dot left aside, is a white
-dot."""
+"""A pixel so many times as bright as the second brightest of its neighbours is a white dot."""
 
 
 def display_values(image: np.ndarray) -> np.ndarray:

@@ -34,8 +34,7 @@ def draw_pieces(picture, pieces, world_from_panorama, camera_height, depth=None,
 
 
 def draw_axis_planes(picture, world_from_panorama, thickness=1):
-    """Draw where the planes xy (the horizon, blue), xz (red) and yz (green) through the origin cut the
-    picture."""
+    """Draw where the planes xy (the horizon, blue), xz (red) and yz (green) cut the picture."""
     turns = np.linspace(0, 2 * np.pi, int(360 / STEP_DEG) + 1)[:, None]
     axes = np.eye(3)
     for (a, b), colour in (((1, 2), YZ_COLOUR), ((0, 2), XZ_COLOUR), ((0, 1), HORIZON_COLOUR)):
@@ -53,8 +52,7 @@ def draw_segment(picture, first, second, colour, thickness=2, depth=None):
 
 
 def draw_curve(picture, points, colour, thickness):
-    """Draw a curve through points (n, 3) of the panorama frame, which lie close together as seen from
-    there."""
+    """Draw a curve through points (n, 3) of the panorama frame that are close together in the picture."""
     height, width = picture.shape[:2]
     pixels = pixel_from_uv(unwrapped(uv_from_direction(points)), width, height)
     shifts = range(int(np.floor(pixels[:, 0].min() / width)), int(np.floor(pixels[:, 0].max() / width)) + 1)
@@ -98,8 +96,7 @@ def _visible_runs(points, depth):
 
 
 def _farthest_around(depth, points):
-    """The depth at directions (n, 3), the farthest of 3 × 3 pixels: an edge belongs to the face that
-    shows."""
+    """The depth at directions (n, 3), the farthest of 3 × 3 pixels: an edge is its visible face's."""
     padded = np.pad(depth, ((1, 1), (1, 1)), mode="wrap")
     farthest = cv2.dilate(padded, np.ones((3, 3), np.uint8))[1:-1, 1:-1]
     return sample(farthest, points)

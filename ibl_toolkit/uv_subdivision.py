@@ -82,8 +82,7 @@ def _triangles(mesh):
 
 
 def _split_at(direction, camera_height, local, triangles, world_from_local):
-    """Make a vertex of each point where the ray from the panorama's origin in `direction` meets a
-    triangle."""
+    """Make a vertex wherever the ray from the panorama's origin in `direction` meets a triangle."""
     origin = np.array([0.0, 0.0, camera_height])
     world = transformed(world_from_local, np.array(local))
     made = {}

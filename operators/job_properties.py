@@ -1,5 +1,4 @@
-"""What the last solution answered, and how maps and pictures are to be made: part of the scene's panorama
-set."""
+"""What the last solution answered, and how maps and pictures are to be made."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -14,8 +13,7 @@ LIGHTS = (
 
 
 class PanoramaResult(bpy.types.PropertyGroup):
-    """What the last calibration found; uncertainties are one standard deviation for half a pixel of click
-    error."""
+    """What the last calibration found; uncertainties are one σ for half a pixel of click error."""
 
     is_solved: BoolProperty()
     camera_height: FloatProperty()

@@ -97,8 +97,7 @@ class PANORAMA_OT_remove_item(_OnItem, bpy.types.Operator):
 
 
 class PANORAMA_OT_move_item(_OnItem, bpy.types.Operator):
-    """Move the selected pick or shape up or down: the first floor rectangle gives +x, later shapes lie on
-    earlier ones"""
+    """Move the selected item up or down: the first floor rectangle gives +x, later shapes lie on top"""
 
     bl_idname = "panorama.move_item"
     bl_label = "Move"

@@ -24,8 +24,7 @@ RESULT_FIELDS = (
 
 
 def load_panorama(path):
-    """Load an image that is fit to be a panorama -> bpy image. Raises ValueError or OSError naming file and
-    value."""
+    """Load an image that is fit to be a panorama. Raises ValueError or OSError naming file and value."""
     read_panorama(path)
     try:
         return blender_images.load_radiance(str(path))

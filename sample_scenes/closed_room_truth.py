@@ -1,5 +1,4 @@
-"""The closed room photographed, filled with objects, and rendered as it truly is: what a composite must
-match."""
+"""The closed room captured, and rendered with objects truly in it: what a composite must match."""
 
 from __future__ import annotations
 
@@ -77,8 +76,7 @@ def _median_render(scene, renders):
 def mixed_scene(
     image: Path, most_lights: int | None = None
 ) -> tuple[bpy.types.Scene, preparation.Preparation]:
-    """Calibrate, rebuild and prepare the room from its panorama alone, and put the objects and the camera
-    in."""
+    """Calibrate, rebuild and prepare the room from its panorama alone; put objects and camera in."""
     height, width, _ = read_panorama(image).shape
     scene = bpy.data.scenes.new("Mixed")
     panorama_set = closed_room_set(image)

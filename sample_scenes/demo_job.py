@@ -29,8 +29,7 @@ PIXELS_AROUND = 3
 
 @dataclass(frozen=True)
 class Effort:
-    """How much a run spends. A wider photograph is shrunk to `image_width`, which the panorama picture has
-    too."""
+    """How much a run spends. A wider photograph is shrunk to `image_width`, the panorama's too."""
 
     image_width: int
     frame: tuple[int, int]
@@ -166,8 +165,7 @@ def depth_figures(depth) -> dict:
 
 
 def difference(image, photograph, mask) -> dict:
-    """How far pixels in a mask (H, W) are from the photograph's; `psnr_db` is null where they are the
-    same."""
+    """How far pixels in a mask (H, W) are from the photograph's; `psnr_db` is null where equal."""
     ratio = metrics.psnr(image, photograph, mask)
     return {
         "share_of_pixels": float(mask.mean()),

@@ -1,5 +1,4 @@
-"""The closed room's set with a small picture of known colours, as a scene's panorama: for operators and
-panels."""
+"""The closed room's set with a small picture of known colours, for tests of operators and panels."""
 
 import numpy as np
 

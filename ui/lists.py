@@ -1,5 +1,4 @@
-"""The lists of picks and shapes, and the fields of the selected one; the sidebar and the Image Editor share
-them."""
+"""The lists of picks and shapes with the selected one's fields, for sidebar and Image Editor."""
 
 import bpy
 

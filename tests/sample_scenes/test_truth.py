@@ -11,8 +11,7 @@ from expanded_panoramas.sample_scenes.closed_room import LARGE_LAMPS, SMALL_LAMP
 WIDTH, HEIGHT, SAMPLES = 128, 72, 64
 UNCHANGED_DB = 45.0
 MIRRORED_LAMPS = 6
-"""Pixels of the mirror ball at most whose lamp, far smaller than a pixel, was met by one render and not the
-other."""
+"""At most so many pixels of the mirror ball show a lamp, smaller than a pixel, that the truth missed."""
 
 
 @pytest.mark.parametrize(
