@@ -11,6 +11,9 @@ from .place import Place, own_name
 
 MOST_ALBEDO = 0.9
 """A real surface reflects no more; what the photograph shows beyond that is taken as its own light."""
+MOST_GLOSS = 0.5
+"""At most this share of any colour of the photograph is taken for a reflection: were it all, an object that
+blocks a window's blue reflection would leave the other colours alone, as a red spot."""
 LEAST_IRRADIANCE, LEAST_GLOSS = 1e-4, 1e-6
 
 
@@ -27,8 +30,8 @@ def support_material(place: Place) -> bpy.types.Material:
     With E the irradiance that the place throws on the point and S the reflection that the panorama saw there,
     A = (M − S)·π/E is the albedo that makes the lit surface show M; darker where light is blocked, brighter
     where it bounces. It replaces the factor ES of eq. 5.11, whose light has neither distance nor emitter
-    cosine. Where the reflectivity asked for would mirror more than the photograph shows, it is lowered, for
-    all colours alike.
+    cosine. Where the reflectivity asked for would mirror more than MOST_GLOSS of what the photograph
+    shows, it is lowered, for all colours alike.
     """
     material = _emptied(place, "Panorama Support")
     tree = material.node_tree
@@ -105,12 +108,13 @@ def _probe(place, name, seen_by_camera):
 
 
 def _possible_share(tree, gloss, photograph):
-    """The largest share, at most 1, of the gloss that leaves no colour of the photograph negative."""
+    """The largest share, at most 1, of the gloss that takes no more than MOST_GLOSS of any colour."""
     ratios = vector_maths(
         tree, "DIVIDE", photograph, vector_maths(tree, "MAXIMUM", gloss, (LEAST_GLOSS,) * 3)
     )
     red, green, blue = add(tree, "ShaderNodeSeparateXYZ", {"Vector": ratios}).outputs
     least = maths(tree, "MINIMUM", maths(tree, "MINIMUM", red, green), blue)
+    least = maths(tree, "MULTIPLY", least, MOST_GLOSS)
     return maths(tree, "MAXIMUM", maths(tree, "MINIMUM", least, 1.0), 0.0)
 
 
