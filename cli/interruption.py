@@ -12,9 +12,11 @@ import socket
 import sys
 import tempfile
 import threading
+import time
 from contextlib import contextmanager
 
 STATUS = 130
+ATTEMPTS = 50
 
 
 class Watch:
@@ -79,8 +81,17 @@ def _leave(watch, scratch):
     blender = sys.modules.get("_bpy")
     if blender is not None:
         shutil.rmtree(blender.app.tempdir, ignore_errors=True)
-    shutil.rmtree(scratch, ignore_errors=True)
+    _remove(scratch)
     atomic = sys.modules.get(f"{__package__.rpartition('.')[0]}.ibl_toolkit.images.atomic")
     if atomic is not None:
         atomic.discard_unfinished()
     os._exit(STATUS)
+
+
+def _remove(folder):
+    """Remove a folder into which the main thread may be writing at this moment."""
+    for _ in range(ATTEMPTS):
+        shutil.rmtree(folder, ignore_errors=True)
+        if not os.path.exists(folder):
+            return
+        time.sleep(0.01)
