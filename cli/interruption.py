@@ -12,11 +12,9 @@ import socket
 import sys
 import tempfile
 import threading
-import time
 from contextlib import contextmanager
 
 STATUS = 130
-ATTEMPTS = 50
 
 
 class Watch:
@@ -25,6 +23,7 @@ class Watch:
     def __init__(self, label):
         self.label = label
         self.clear = lambda: None
+        self.leaving = threading.Event()
 
 
 @contextmanager
@@ -45,6 +44,8 @@ def watched(label):
             else:
                 yield watch
         finally:
+            if watch.leaving.is_set():
+                threading.Event().wait()  # what failed just now is the doing of the thread that ends us
             tempfile.tempdir = before
 
 
@@ -75,6 +76,7 @@ def _waking(leave):
 
 
 def _leave(watch, scratch):
+    watch.leaving.set()
     watch.clear()
     print(f"{watch.label}: interrupted", file=sys.stderr, flush=True)
     # What is not imported has made nothing; to import it here could wait for an import of the main thread.
@@ -89,9 +91,7 @@ def _leave(watch, scratch):
 
 
 def _remove(folder):
-    """Remove a folder into which the main thread may be writing at this moment."""
-    for _ in range(ATTEMPTS):
-        shutil.rmtree(folder, ignore_errors=True)
-        if not os.path.exists(folder):
-            return
-        time.sleep(0.01)
+    """Remove a folder into which the main thread may be writing: under another name nothing new gets in."""
+    gone = f"{folder}.gone"
+    os.replace(folder, gone)
+    shutil.rmtree(gone, ignore_errors=True)
