@@ -12,7 +12,8 @@ import socket
 import sys
 import tempfile
 import threading
-from contextlib import contextmanager
+import time
+from contextlib import contextmanager, suppress
 
 STATUS = 130
 
@@ -77,21 +78,31 @@ def _waking(leave):
 
 def _leave(watch, scratch):
     watch.leaving.set()
-    watch.clear()
-    print(f"{watch.label}: interrupted", file=sys.stderr, flush=True)
+    try:
+        watch.clear()
+        print(f"{watch.label}: interrupted", file=sys.stderr, flush=True)
+        _discard(scratch)
+    finally:
+        os._exit(STATUS)
+
+
+def _discard(scratch):
     # What is not imported has made nothing; to import it here could wait for an import of the main thread.
-    blender = sys.modules.get("_bpy")
-    if blender is not None:
-        shutil.rmtree(blender.app.tempdir, ignore_errors=True)
-    _remove(scratch)
     atomic = sys.modules.get(f"{__package__.rpartition('.')[0]}.ibl_toolkit.images.atomic")
-    if atomic is not None:
+    if hasattr(atomic, "discard_unfinished"):
         atomic.discard_unfinished()
-    os._exit(STATUS)
+    blender = sys.modules.get("_bpy")
+    if hasattr(blender, "app"):
+        shutil.rmtree(blender.app.tempdir, ignore_errors=True)
+    for _ in range(3):  # a render that is about to write makes its folder anew
+        _remove(scratch)
+        time.sleep(0.02)
+    _remove(scratch)
 
 
 def _remove(folder):
     """Remove a folder into which the main thread may be writing: under another name nothing new gets in."""
     gone = f"{folder}.gone"
-    os.replace(folder, gone)
+    with suppress(FileNotFoundError):  # the main thread was about to remove it, too
+        os.replace(folder, gone)
     shutil.rmtree(gone, ignore_errors=True)
