@@ -101,7 +101,7 @@ def _discard(scratch):
 
 
 def _remove(folder):
-    """Remove a folder into which the main thread may be writing: under another name nothing new gets in."""
+    """Remove a folder into which the main thread may be writing: first out of its way, under another name."""
     gone = f"{folder}.gone"
     with suppress(FileNotFoundError):  # the main thread was about to remove it, too
         os.replace(folder, gone)
