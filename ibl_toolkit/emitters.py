@@ -16,9 +16,8 @@ import cv2
 import numpy as np
 
 from . import equirectangular
+from .light.light_map import LUMINANCE
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-"""Rec. 709 weights of linear R, G, B."""
 THRESHOLD = 4.0
 """A pixel is bright above this multiple of the map's mean luminance over the sphere."""
 LEAST_SHARE = 0.002
