@@ -60,7 +60,7 @@ def split(image: np.ndarray, share: float | None = None) -> Split:
     >>> split(np.ones((8, 16, 3), np.float32)).share
     0.0
     """
-    check_light_map(image)
+    image = check_light_map(image)
     if share is not None and not 0 < share < 1:
         raise ValueError(f"share is {share}: must be above 0 and below 1, or None for the two-trapezoid rule")
     brightness = luminance(image)
@@ -90,7 +90,7 @@ def two_trapezoid_curves(image: np.ndarray):
     >>> bool(np.isclose(split(image).solid_angle, x[zeta.argmin()]))
     True
     """
-    check_light_map(image)
+    image = check_light_map(image)
     brightness = luminance(image)
     solid_angles = equirectangular.row_solid_angles(*brightness.shape[::-1])
     order = np.argsort(-brightness.ravel(), kind="stable")

@@ -1,0 +1,159 @@
+"""Many samples of a light map made few: the two whose union errs least become one, again and again.
+
+Source: thesis, section 3.2.3, after Velho and Gomes [56].
+"""
+
+import numpy as np
+
+from .light_map import LUMINANCE
+from .samples import combined
+
+FREQUENCIES = ("F1", "F2", "F3")
+"""F1: 1, the distance alone counts. F2: the luminance of the region, integrated over it. F3: its mean."""
+_LEAST_FREQUENCY = 1e-300
+"""Two clusters without light join at no error, not at 0/0."""
+
+
+def cluster(samples, count=None, least_angle=None, frequency="F2"):
+    """Merge LightSamples in pairs until `count` are left, or none are nearer than `least_angle` [rad].
+
+    The pair with the smallest E(c_i, c_j) = F_i F_j / (F_i + F_j) · d² is next, d the great-circle distance;
+    what is printed, (F_i F_j² + F_j F_i²) / (F_i + F_j)² · d², is the same. It becomes
+    c = (F_i c_i + F_j c_j) / (F_i + F_j), brought back to the unit sphere. F1 and F2 of the union are sums,
+    F3 is its mean luminance. With `least_angle`, only pairs nearer than that are merged; with both criteria,
+    the first that is met ends it.
+
+    -> LightSamples: irradiance and solid angles are sums, the partition has the new numbers.
+
+    Memory: 4 n² bytes for n samples.
+
+    Raises: ValueError for another frequency, without a criterion, for a count below 1, or an angle outside
+    (0, π].
+
+    Source: thesis, sections 3.2.3 and 3.2.3.1. Deviation: with `least_angle`, the thesis merges the pair of
+    smallest E even where it is wider apart than that.
+
+    >>> from .samples import samples_from_sites
+    >>> random = np.random.default_rng(1)
+    >>> image = random.random((16, 32, 3), dtype=np.float32)
+    >>> many = samples_from_sites(image, random.normal(size=(50, 3)))
+    >>> few = cluster(many, count=6)
+    >>> len(few), bool(np.allclose(few.irradiance.sum(axis=0), many.irradiance.sum(axis=0), rtol=1e-9))
+    (6, True)
+    """
+    if frequency not in FREQUENCIES:
+        raise ValueError(f"frequency is {frequency!r}: must be one of {', '.join(FREQUENCIES)}")
+    if count is None and least_angle is None:
+        raise ValueError("neither count nor least_angle is given: one must say when to stop")
+    if count is not None and count < 1:
+        raise ValueError(f"count is {count}: at least 1 light must be left")
+    if least_angle is not None and not 0 < least_angle <= np.pi:
+        raise ValueError(f"least_angle is {least_angle} rad: must be above 0 and at most π")
+    clusters = _Clusters(samples, frequency, least_angle or np.inf)
+    while clusters.count > (count or 1) and clusters.merge_cheapest():
+        pass
+    return combined(samples, *clusters.result())
+
+
+def _frequency_terms(samples, frequency):
+    """Numerator and denominator (n,) of every sample's F, and whether denominators add up in a union."""
+    ones = np.ones(len(samples))
+    if frequency == "F1":
+        return ones, ones.copy(), False
+    power = np.asarray(samples.irradiance, np.float64) @ LUMINANCE
+    if frequency == "F2":
+        return power, ones, False
+    return power, np.array(samples.solid_angles, np.float64), True
+
+
+class _Clusters:
+    """What is left of the samples, the error of every pair, and for each the partner it errs least with.
+
+    Rows of merged clusters stay, at infinite error, until half of the table is of them.
+    """
+
+    def __init__(self, samples, frequency, widest):
+        self._above, self._below, self._is_mean = _frequency_terms(samples, frequency)
+        self._frequencies = self._above / self._below
+        self._directions = np.array(samples.directions, np.float64)
+        self._widest = widest
+        self.count = len(samples)
+        self._alive = np.ones(self.count, bool)
+        self._numbers = np.arange(self.count)  # each row's cluster goes by the number of one of its samples
+        self._parents = np.arange(self.count)  # of each number: itself, or the one it was merged into
+        self._errors = np.empty((self.count, self.count), np.float32)
+        for row in range(self.count):
+            self._errors[row] = self._errors_with(row)
+        self._nearest = self._errors.argmin(axis=1)
+        self._least = self._errors[self._numbers, self._nearest]
+
+    def merge_cheapest(self):
+        """Make one of the two clusters whose union errs least; False if no pair may be merged."""
+        i = int(self._least.argmin())
+        if np.isinf(self._least[i]):
+            return False
+        j = int(self._nearest[i])
+        self._join(i, j)
+        errors = self._errors_with(i)
+        self._errors[j] = self._errors[:, j] = np.inf
+        self._errors[i] = self._errors[:, i] = errors
+        self._least[j] = np.inf
+        closer = errors < self._least
+        self._nearest[closer], self._least[closer] = i, errors[closer]
+        lost = (self._nearest == i) & ~closer | (self._nearest == j)
+        lost[i] = True
+        self._choose(np.flatnonzero(lost & self._alive))
+        if 2 * self.count < len(self._alive):
+            self._drop_empty_rows()
+        return True
+
+    def result(self):
+        """Cluster of every sample, from 0, and directions (count, 3) of the clusters."""
+        parents = self._parents
+        while not np.array_equal(parents, parents[parents]):
+            parents = parents[parents]
+        order = np.argsort(self._numbers[self._alive])
+        numbers = self._numbers[self._alive][order]
+        return np.searchsorted(numbers, parents), self._directions[self._alive][order]
+
+    def _errors_with(self, row):
+        """E (n,) of the unions of this cluster with every other, infinite where none may be."""
+        offsets = self._directions - self._directions[row]
+        chords = np.sqrt(np.einsum("nk,nk->n", offsets, offsets)).astype(np.float32)
+        distances = 2 * np.arcsin(np.minimum(chords / 2, 1))
+        frequencies = self._frequencies
+        sums = np.maximum(frequencies + frequencies[row], _LEAST_FREQUENCY)
+        errors = distances * distances * (frequencies * frequencies[row] / sums)
+        errors[~self._alive | (distances >= self._widest)] = np.inf
+        errors[row] = np.inf
+        return errors.astype(np.float32)
+
+    def _choose(self, rows):
+        """Find anew the partners of these clusters."""
+        for row in rows:
+            self._nearest[row] = self._errors[row].argmin()
+            self._least[row] = self._errors[row, self._nearest[row]]
+
+    def _join(self, i, j):
+        """Put cluster j into cluster i."""
+        first, second = self._frequencies[i], self._frequencies[j]
+        mean = first * self._directions[i] + second * self._directions[j]
+        length = np.sqrt(mean @ mean)
+        if length > 1e-9 * (first + second):
+            self._directions[i] = mean / length
+        # otherwise they are opposite and as strong: the one is as good as the other
+        self._above[i] += self._above[j]
+        if self._is_mean:
+            self._below[i] += self._below[j]
+        self._frequencies[i] = self._above[i] / self._below[i]
+        self._parents[self._numbers[j]] = self._numbers[i]
+        self._alive[j] = False
+        self.count -= 1
+
+    def _drop_empty_rows(self):
+        rows = np.flatnonzero(self._alive)
+        self._errors = self._errors[np.ix_(rows, rows)]
+        names = "_above", "_below", "_frequencies", "_directions", "_alive", "_numbers", "_least"
+        for name in names:
+            setattr(self, name, getattr(self, name)[rows])
+        self._nearest = np.searchsorted(rows, self._nearest[rows])
