@@ -82,7 +82,7 @@ def in_display_window(pixels, part):
 
 
 def write_exr(path, channels, attributes=None):
-    """Write (H, W) arrays of float16 or float32, by channel name, losslessly and all or nothing.
+    """Write (H, W) arrays of float16, float32 or uint32, by channel name, losslessly and all or nothing.
 
     attributes: header entries by name; a float array of shape (3, 3) is stored as a matrix, an array of
     one float64 as a double.
@@ -93,8 +93,10 @@ def write_exr(path, channels, attributes=None):
     if len(set(shapes.values())) != 1 or len(next(iter(shapes.values()))) != 2:
         raise ValueError(f"channels of shapes {shapes}: they must all be (H, W)")
     for name, array in channels.items():
-        if array.dtype not in (np.float16, np.float32):
-            raise ValueError(f"channel {name} is of type {array.dtype}: it must be float16 or float32")
+        if array.dtype not in (np.float16, np.float32, np.uint32):
+            raise ValueError(
+                f"channel {name} is of type {array.dtype}: it must be float16, float32 or uint32"
+            )
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **(attributes or {})}
     pixels = {name: np.ascontiguousarray(array) for name, array in channels.items()}
     with replacing(path) as temporary:
