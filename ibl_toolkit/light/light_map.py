@@ -83,14 +83,21 @@ def luminous_power(image, mask=None):
     12.5664
     """
     height, width = image.shape[:2]
-    solid_angles = equirectangular.row_solid_angles(width, height).astype(np.float32)[:, None]
+    solid_angles = equirectangular.row_solid_angles(width, height)
     power = np.empty((height, width), np.float32)
     for rows in strips(height):
-        np.multiply(luminance(image[rows]), solid_angles[rows], out=power[rows])
-        if mask is not None:
-            power[rows] *= mask[rows]
+        power[rows] = pixel_power(image[rows], solid_angles[rows], None if mask is None else mask[rows])
     if not power.any():
         raise ValueError("no light is in the chosen part of the map: its luminance is 0; expected some")
+    return power
+
+
+def pixel_power(image, solid_angles, mask=None):
+    """As `luminous_power`, of a piece (h, w, 3) of a map with the solid angles (h,) of its rows' pixels."""
+    power = luminance(image)
+    power *= solid_angles.astype(np.float32)[:, None]
+    if mask is not None:
+        power *= mask
     return power
 
 
