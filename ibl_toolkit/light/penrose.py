@@ -10,9 +10,9 @@ over a triangle comes from a pyramid of maxima, not from the corners and the cen
 is missed; points are ranked by the magnification at which they appear, so that the count comes out; and
 no pixel has two samples, a pixel being the smallest thing that a map knows.
 
-The plane has no seam: the tiling on the left edge does not continue that on the right, so samples on
-either side of the seam keep no distance, and near the poles they are spread along the circles of latitude.
-Corrections do cross the seam.
+The plane ends at the seam: the tiling on the left does not continue that on the right, so samples on either
+side keep no distance.  So `penrose_sampling` puts the seam on the darkest meridian.  Corrections cross it.
+Near the poles samples are spread in the plane, not on the sphere: their number is right, but some are close.
 
 Source: Ostromoukhov, Donohue & Jodoin, Fast Hierarchical Importance Sampling with Blue Noise Properties,
 SIGGRAPH 2004; thesis sections 3.1.1.2 and 3.2.3, and A.2.1 (area deformation, fig. A-1).
@@ -56,7 +56,9 @@ def penrose_sampling(image, count, mask=None):
     image = check_light_map(image)
     mask = check_mask(mask, image)
     power = luminous_power(image, mask)
-    uv = penrose_points(power, count)
+    darkest = int(np.argmin(power.sum(axis=0, dtype=np.float64)))
+    uv = penrose_points(np.roll(power, -darkest, axis=1), count)
+    uv[:, 0] = (uv[:, 0] + darkest / image.shape[1]) % 1.0
     return samples_from_sites(image, _settled(uv, image.shape[1], image.shape[0]), mask)
 
 
@@ -167,13 +169,19 @@ def _corrections():
 
 
 def _is_astray(uv, own, importance):
-    """Which corrected points (n, 2) left the image or its light, or came into another point's pixel."""
+    """Which corrected points uv (n, 2) came to where they do not belong, compared with their `own` place.
+
+    That is outside the image, into another point's pixel, or across an edge: to where the importance
+    differs by more than a level's factor, phi**2, so that another density begins.
+    """
     height, width = importance.shape
     before, after = _pixels(own, width, height), _pixels(uv, width, height)
     _, group, size = np.unique(after, return_inverse=True, return_counts=True)
-    is_foreign = (after != before) & np.isin(after, before)
+    is_taken = (after != before) & np.isin(after, before) | (size[group] > 1)
     is_outside = (uv[:, 1] < 0) | (uv[:, 1] >= 1)
-    return is_outside | is_foreign | (size[group] > 1) | (importance.ravel()[after] == 0)
+    with np.errstate(divide="ignore"):
+        levels = np.log(importance.ravel()[[after, before]].astype(np.float64)) / np.log(penrose_tiles.PHI**2)
+    return is_outside | is_taken | (np.abs(levels[0] - levels[1]) > 1)
 
 
 def _settled(uv, width, height):

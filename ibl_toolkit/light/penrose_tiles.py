@@ -175,9 +175,10 @@ def joined(parts):
 
 
 def level_of(importance):
-    """Level (n,) by which every code value up to `importance` - 1/2 is there: floor(log(sqrt(5) x) to phi**2).
+    """Level (n,) at which all code values up to `importance` - 1/2 are there.
 
-    Importance is in units of code values, at least 1/2.
+    It is log(sqrt(5) importance) to the base phi**2, rounded down.  Importance counts in code values and
+    is at least 1/2.
 
     >>> level_of([0.5, 1.5, 100]).tolist()
     [0, 1, 5]
