@@ -13,8 +13,8 @@ length is shortened by its cosine of elevation.
 
 Rectangles end at a seam, none reaches around. This seam is not the image's edge: it lies on the meridian with
 the least power, so that a lamp there stays whole and turning a panorama by whole columns turns the samples
-with it. At a pole a rectangle is a sector with its tip there; what is taken on the sphere (solid angle,
-variance, mean direction) is right for it too, but no rectangle holds the surroundings of a pole alone.
+with it. At a pole a rectangle is a sector with its tip there; all is taken on the sphere (solid angle,
+variance, mean direction), so such a sector needs no exception.
 
 Source: Debevec, "A Median Cut Algorithm for Light Probe Sampling", SIGGRAPH 2005 posters; Viriyothai and
 Debevec, "Variance Minimization Light Probe Sampling", SIGGRAPH 2009 posters; thesis section 3.1.1.1.

@@ -17,6 +17,8 @@ _ROOT = 256
 """Pixels along the sides of the largest blocks; a power of two. A row of them is worked on at once."""
 _SLACK = 1e-7
 """Rounding of an arc cosine near 1 [rad]."""
+_DIGITS = 14
+"""Decimals by which sites at one place are told: rounding makes the 15th differ."""
 
 
 def voronoi_partition(directions, width, height, mask=None):
@@ -35,7 +37,7 @@ def voronoi_partition(directions, width, height, mask=None):
     if not len(unit):
         raise ValueError("there are 0 sites; expected at least one direction")
     # Sites at one place would keep their blocks from ever having one site left.
-    numbers = np.sort(np.unique(unit, axis=0, return_index=True)[1]).astype(np.int32)
+    numbers = np.sort(np.unique(unit.round(_DIGITS), axis=0, return_index=True)[1]).astype(np.int32)
     unit = np.ascontiguousarray(unit[numbers].T)
     partition = np.empty((height, width), np.int32)
     for top in range(0, height, _ROOT):
