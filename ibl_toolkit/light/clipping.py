@@ -60,20 +60,34 @@ def find_clipping(image: np.ndarray) -> Clipping:
     """
     image = check_light_map(image)
     height, width = image.shape[:2]
-    highest = image.max()
-    plateau = np.empty((height, width), bool)
-    for rows in strips(height):
-        plateau[rows] = image[rows].max(axis=2) >= (1 - PLATEAU) * highest
-    rows = equirectangular.row_solid_angles(width, height)
-    outside = 4 * np.pi - float(np.count_nonzero(plateau, axis=1) @ rows)
-    mask = _largest_part(plateau, rows)
-    solid_angle = float(np.count_nonzero(mask, axis=1) @ rows)
-    level = irradiance(image, mask) / solid_angle
-    around = irradiance(image, ~plateau) / max(outside, rows.min())
+    solid_angles = equirectangular.row_solid_angles(width, height)
+    plateau = _plateau(image)
+    mask = _largest_part(plateau, solid_angles)
+    light, solid_angle = _sums(image, mask, solid_angles)
+    light_of_all, solid_angle_of_all = _sums(image, plateau, solid_angles)
+    around = (irradiance(image) - light_of_all) / max(4 * np.pi - solid_angle_of_all, solid_angles.min())
+    level = light / solid_angle
     is_light = LUMINANCE @ level > LEAST_CONTRAST * (LUMINANCE @ around) and solid_angle < LARGEST
     if np.count_nonzero(mask) < LEAST_PIXELS or not is_light:
         return Clipping(False, np.zeros(3), 0.0, np.zeros(3), np.zeros_like(mask))
-    return Clipping(True, level, solid_angle, _middle(mask, rows), mask)
+    return Clipping(True, level, solid_angle, _middle(mask, solid_angles), mask)
+
+
+def _plateau(image):
+    """(H, W) bool: pixels whose largest channel has the map's highest value."""
+    least = (1 - PLATEAU) * image.max()
+    plateau = np.zeros(image.shape[:2], bool)
+    for rows in strips(len(image)):
+        if image[rows].max() >= least:  # few strips have it
+            plateau[rows] = (image[rows] >= least).any(axis=2)
+    return plateau
+
+
+def _sums(image, mask, solid_angles):
+    """Irradiance (3,) and solid angle of the pixels of a mask."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    light = sum(solid_angles[row] * image[row][mask[row]].sum(axis=0, dtype=np.float64) for row in rows)
+    return light, float(np.count_nonzero(mask[rows], axis=1) @ solid_angles[rows])
 
 
 def restored(image: np.ndarray, clipping: Clipping, true_irradiance) -> np.ndarray:
@@ -157,18 +171,24 @@ def _refuse_unclipped(clipping):
 
 def _largest_part(plateau, solid_angles):
     """Mask of the connected part (8 neighbours, across the seam too) with the largest solid angle."""
-    count, labels = cv2.connectedComponents(plateau.astype(np.uint8), connectivity=8)
+    rows = np.flatnonzero(plateau.any(axis=1))
+    rows = slice(rows[0], rows[-1] + 1)
+    count, labels = cv2.connectedComponents(plateau[rows].astype(np.uint8), connectivity=8)
     joined = np.arange(count)
     left, right = labels[:, 0], labels[:, -1]
     for step in (-1, 0, 1):
-        for one, other in {*zip(left.tolist(), np.roll(right, step).tolist(), strict=True)}:
+        beside = right[max(step, 0) : len(right) + min(step, 0)]
+        here = left[max(-step, 0) : len(left) + min(-step, 0)]
+        for one, other in {*zip(here.tolist(), beside.tolist(), strict=True)}:
             if one and other:
                 joined[joined == joined[other]] = joined[one]
     areas = np.zeros(count)
-    for row in np.flatnonzero(plateau.any(axis=1)):
-        areas += np.bincount(joined[labels[row]], minlength=count) * solid_angles[row]
+    for row, solid_angle in zip(labels, solid_angles[rows], strict=True):
+        areas += np.bincount(joined[row], minlength=count) * solid_angle
     areas[0] = 0
-    return joined[labels] == areas.argmax()
+    mask = np.zeros_like(plateau)
+    mask[rows] = joined[labels] == areas.argmax()
+    return mask
 
 
 def _middle(mask, solid_angles):

@@ -55,6 +55,25 @@ def cluster(samples, count=None, least_angle=None, frequency="F2"):
     return combined(samples, *clusters.result())
 
 
+def clusterings(samples, most, frequency="F2"):
+    """For every number of clusters, from `most` down to 1: groups (n,) and directions (m, 3).
+
+    Cheaper than `cluster` for each, and without partitions.
+
+    >>> from .samples import samples_from_sites
+    >>> samples = samples_from_sites(np.ones((8, 16, 3), np.float32), [[1, 0, 0], [-1, 0, 0], [-1, 1, 0]])
+    >>> [groups.tolist() for groups, _ in clusterings(samples, 2)]
+    [[0, 1, 1], [0, 0, 0]]
+    """
+    clusters = _Clusters(samples, frequency, np.inf)
+    while clusters.count > most:
+        clusters.merge_cheapest()
+    yield clusters.result()
+    while clusters.count > 1:
+        clusters.merge_cheapest()
+        yield clusters.result()
+
+
 def _frequency_terms(samples, frequency):
     """Numerator and denominator (n,) of every sample's F, and whether denominators add up in a union."""
     ones = np.ones(len(samples))

@@ -189,10 +189,12 @@ def _knee(ranked):
 def _from_last_pixel(ranked, last):
     brightness, solid_angles = ranked.brightness, ranked.solid_angles
     level = brightness.ravel()[last]
-    mask = brightness > level
+    mask = brightness >= level
     as_bright = np.flatnonzero(brightness == level)
-    mask.ravel()[as_bright[as_bright <= last]] = True
-    power = brightness.sum(axis=1, dtype=np.float64) @ solid_angles
-    bright = np.where(mask, brightness, 0).sum(axis=1, dtype=np.float64) @ solid_angles
+    mask.ravel()[as_bright[as_bright > last]] = False
+    power = bright = 0.0
+    for rows in row_blocks(len(mask)):
+        power += brightness[rows].sum(axis=1, dtype=np.float64) @ solid_angles[rows]
+        bright += (brightness[rows] * mask[rows]).sum(axis=1, dtype=np.float64) @ solid_angles[rows]
     area = np.count_nonzero(mask, axis=1) @ solid_angles
     return Split(mask, float(bright / power), float(level), float(area))

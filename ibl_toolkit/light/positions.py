@@ -1,0 +1,76 @@
+"""Where the lights of a map with depth are: the middle of what each region shows."""
+
+import numpy as np
+
+from .. import equirectangular
+from .light_map import luminance, strips
+
+LEAST_WITH_DEPTH = 0.5
+"""A region with depth for less of its light has no place: most of it is at infinity."""
+
+
+def moments(image, partition, count, depth=None):
+    """Per region: power Σ P and Σ P ω, or Σ P z ω where there is depth; (count, 4), P = luminance · Ω.
+
+    With `depth` (H, W) [m], only pixels of finite depth count.
+    """
+    height, width = partition.shape
+    middles = (np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height
+    around = equirectangular.direction_from_uv(np.stack([middles[0], np.full(width, 0.5)], axis=1))
+    upwards = equirectangular.direction_from_uv(np.stack([np.full(height, 0.5), middles[1]], axis=1))
+    solid_angles = equirectangular.row_solid_angles(width, height)
+    total = np.zeros((count, 4))
+    for rows in strips(height):
+        row, column = np.nonzero(partition[rows] >= 0)
+        if not row.size:
+            continue
+        numbers = partition[rows][row, column]
+        power = luminance(image[rows])[row, column] * solid_angles[rows][row]
+        length = np.ones(row.size)
+        if depth is not None:
+            length = depth[rows][row, column]
+            power = np.where(np.isfinite(length), power, 0)
+            length = np.where(np.isfinite(length), length, 0)
+        horizontal = power * length * upwards[rows, 0][row]
+        weights = (
+            power,
+            horizontal * around[column, 0],
+            horizontal * around[column, 1],
+            power * length * upwards[rows, 2][row],
+        )
+        total += np.stack([np.bincount(numbers, weight, count) for weight in weights], axis=1)
+    return total
+
+
+def mean_directions(image, samples):
+    """Directions (n, 3) to the middle of each region's light; the sample's own where that is the centre."""
+    sums = moments(image, samples.partition, len(samples))[:, 1:]
+    lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+    has_middle = lengths > 1e-6 * samples.luminance[:, None]
+    return np.where(has_middle, sums / np.where(has_middle, lengths, 1), samples.directions)
+
+
+def positions_at_depth(image, samples, depth):
+    """Positions (n, 3) [m], panorama frame: the mean of ω·z over each region, weighted by its light.
+
+    depth: (H, W) along the ray [m], +inf where there is none. NaN for a region whose light is mostly there.
+
+    Source: thesis section 5.7.1: light comes from positions z·ω.
+
+    Raises: ValueError for a depth of another shape, or NaN or not above 0.
+
+    >>> from .samples import samples_from_sites
+    >>> image = np.ones((8, 16, 3), np.float32)
+    >>> samples = samples_from_sites(image, [[0, 0, 1], [0, 0, -1]])
+    >>> positions_at_depth(image, samples, np.full((8, 16), 2.0)).round(1) + 0.0
+    array([[ 0.,  0.,  1.],
+           [ 0.,  0., -1.]])
+    """
+    if np.shape(depth) != image.shape[:2]:
+        raise ValueError(f"depth has shape {np.shape(depth)}; expected the light map's {image.shape[:2]}")
+    wrong = np.count_nonzero(~(depth > 0))
+    if wrong:
+        raise ValueError(f"depth has {wrong} values that are NaN or not above 0; expected +inf for none")
+    sums = moments(image, samples.partition, len(samples), depth)
+    has_place = sums[:, :1] > LEAST_WITH_DEPTH * samples.luminance[:, None]
+    return np.where(has_place, sums[:, 1:] / np.where(has_place, sums[:, :1], 1), np.nan)
