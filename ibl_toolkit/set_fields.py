@@ -105,6 +105,15 @@ class Fields:
         there, value = self._take(name, default)
         return np.array(_point(value, self.key(name))) if there else value
 
+    def vector(self, name, default=REQUIRED):
+        """Three finite numbers -> (3,)."""
+        there, value = self._take(name, default)
+        if not there:
+            return value
+        if not isinstance(value, list) or len(value) != 3 or not all(_is_number(number) for number in value):
+            self._refuse(name, value, "three numbers")
+        return np.array(value, dtype=np.float64)
+
     def points(self, name, count, exactly):
         """A list of `count` picks, or of at least so many -> (n, 2)."""
         _, value = self._take(name, REQUIRED)
