@@ -14,6 +14,7 @@ from .. import equirectangular
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Rec. 709 weights of linear R, G, B."""
+_LUMINANCE_ROW = LUMINANCE.astype(np.float32)[None]
 STRIP = 16
 """Rows per step: the temporaries of a step then stay in the cache, and no second image is in memory."""
 
@@ -70,7 +71,7 @@ def luminance(image):
     """
     image = np.ascontiguousarray(image, dtype=np.float32)
     result = np.empty(image.shape[:2], np.float32)
-    cv2.transform(image, LUMINANCE.astype(np.float32)[None], dst=result)
+    cv2.transform(image, _LUMINANCE_ROW, dst=result)
     return result
 
 

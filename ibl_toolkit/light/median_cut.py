@@ -33,6 +33,7 @@ from .samples import samples_from_partition
 
 _LEAST_MEAN = 1e-6
 """Below this length of the mean of its directions, a region has no mean direction."""
+_NO_POWER = np.finfo(np.float64).tiny
 
 
 def median_cut(image, count, mask=None):
@@ -178,18 +179,19 @@ def _plan_least_variance(tables, lit, sums):
         if len(profile) < 2:
             continue
         one = np.cumsum(profile, axis=0)
-        total, one = one[-1], one[:-1]
-        gain = _concentration(one) + _concentration(total - one) - _concentration(total)
-        if gain.max() > best:
-            best = float(gain.max())
+        concentration = _concentration(one)
+        gain = concentration[:-1] + _concentration(one[-1] - one[:-1]) - concentration[-1]
+        most = float(gain.max())
+        if most > best:
+            best = most
             cut = _Cut(axis, lit[2 * axis] + _middle_of_ties(gain, best) + 1, lit, profile)
     return best, lambda: cut
 
 
 def _concentration(sums):
-    """|Σ P ω|² / Σ P of sums (…, 4): what a region's power lacks to its variance."""
-    power = np.maximum(sums[..., 0], np.finfo(float).tiny)
-    return np.sum(sums[..., 1:] ** 2, axis=-1) / power
+    """|Σ P ω|² / Σ P of sums (n, 4): what a region's power lacks to its variance."""
+    moments = sums[:, 1:]
+    return np.einsum("ij,ij->i", moments, moments) / np.maximum(sums[:, 0], _NO_POWER)
 
 
 def _middle_of_ties(values, value):
