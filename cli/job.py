@@ -61,18 +61,18 @@ def naming(path):
         raise ValueError(f"{path}: {error}") from error
 
 
-def refuse_output(output, suffix, inputs):
+def refuse_output(output, suffix, inputs, option="-o"):
     """Raise ValueError unless a file of this suffix can be written at `output` without harm to an input.
 
     Before the work: a render of an hour must not end at a folder that isn't there.
     """
     output = Path(output)
     if output.suffix.lower() != suffix:
-        raise ValueError(f"-o {output}: must end in {suffix}")
+        raise ValueError(f"{option} {output}: must end in {suffix}")
     if not output.parent.is_dir():
-        raise ValueError(f"-o {output}: folder {output.parent} does not exist")
+        raise ValueError(f"{option} {output}: folder {output.parent} does not exist")
     if output.is_dir() or not os.access(output.parent, os.W_OK):
-        raise ValueError(f"-o {output}: cannot be written")
+        raise ValueError(f"{option} {output}: cannot be written")
     for path in inputs:
         if path is not None and output.exists() and path.exists() and output.samefile(path):
-            raise ValueError(f"-o {output}: would overwrite an input of the job")
+            raise ValueError(f"{option} {output}: would overwrite an input of the job")

@@ -1,6 +1,7 @@
 """Values of options: what is accepted, and what is said about the rest."""
 
 import argparse
+import math
 import re
 
 _RANGE = re.compile(r"(-?\d+)(?:-(-?\d+))?(?:,(\d+))?")
@@ -52,3 +53,38 @@ def frame_range(text):
         if frames and int(step) and max(map(abs, (frames[0], frames[-1]))) <= _LAST_FRAME:
             return frames
     raise argparse.ArgumentTypeError(f"{text!r}: must be A, A-B or A-B,step with A ≤ B and a step from 1")
+
+
+def share_of_light(text):
+    """A share above 0 and below 1, or `auto` (None).
+
+    >>> share_of_light("auto"), share_of_light("0.5")
+    (None, 0.5)
+    """
+    if text == "auto":
+        return None
+    share = _number(text)
+    if share is None or not 0 < share < 1:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be auto or a share above 0 and below 1")
+    return share
+
+
+def one_or_three(text):
+    """A number, or three of them with commas: R,G,B -> tuple.
+
+    >>> one_or_three("2.5"), one_or_three("3,2,1")
+    ((2.5,), (3.0, 2.0, 1.0))
+    """
+    numbers = tuple(_number(part) for part in text.split(","))
+    if len(numbers) not in (1, 3) or None in numbers:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number, or R,G,B")
+    return numbers
+
+
+def _number(text):
+    """A finite number, or None."""
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return number if math.isfinite(number) else None

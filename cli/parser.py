@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, render
+from . import batch, build, calibrate, depth, lights, render
 from .messages import warn
 
-VERBS = {"calibrate": calibrate, "build": build, "depth": depth, "render": render}
+VERBS = {"calibrate": calibrate, "build": build, "depth": depth, "lights": lights, "render": render}
 
 
 class _Parser(argparse.ArgumentParser):
