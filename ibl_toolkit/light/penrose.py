@@ -66,7 +66,7 @@ def penrose_points(importance, count):
     """Positions uv (n, 2) of `count` points whose density in the image follows `importance` (H, W).
 
     Each lies in a pixel of positive importance that has no other point; n is `count`, or the number of
-    such pixels if that is smaller (on pixels more than twice as long as wide, a few may be missed).
+    such pixels if that is smaller.  Importance counts as float32.
 
     The order is progressive: apart from their correction vectors, which follow the local density, the
     first n points are those of a count of n.
@@ -89,7 +89,8 @@ def penrose_points(importance, count):
 
 
 def _check_importance(importance):
-    importance = np.asarray(importance)
+    with np.errstate(over="ignore"):
+        importance = np.asarray(importance, dtype=np.float32)
     if importance.ndim != 2 or not importance.size:
         raise ValueError(f"importance has shape {importance.shape}; expected (H, W)")
     least, largest = float(importance.min()), float(importance.max())
@@ -103,7 +104,8 @@ def _check_importance(importance):
 def _ranked(pyramid, count):
     """The first `count` sampling tiles by the magnification that they need, and their magnified importance.
 
-    Twice the magnification brings at most about twice the points, so the search does not run away.
+    Twice the magnification brings at most about twice the points, so the search does not run away.  It
+    ends, as a tiling of `limit` has a point in every pixel.
     """
     importance = pyramid.image
     height, width = importance.shape
@@ -113,10 +115,12 @@ def _ranked(pyramid, count):
     magnification = wanted / 2 * value_per_density / importance.mean(dtype=np.float64)
     tiles, local, needed = _candidates(pyramid, magnification, limit)
     if len(tiles) < count:
-        least = float(importance[importance > 0].min())
-        while len(tiles) < count and magnification * least < limit:
-            magnification *= max(4.0, 1.1 * count / (len(tiles) + 1))
-            tiles, local, needed = _candidates(pyramid, magnification, limit)
+        count = min(count, np.count_nonzero(importance))
+    while len(tiles) < count:
+        full = np.count_nonzero(magnification * local >= limit)  # pixels that no magnification helps
+        growing = len(tiles) - full
+        magnification *= max(4.0 if growing else 100.0, 1.1 * (count - full) / (growing + 1))
+        tiles, local, needed = _candidates(pyramid, magnification, limit)
     return tiles[:count], np.minimum(local[:count] * needed[:count].max(), limit)
 
 
