@@ -22,7 +22,11 @@ WIDEST = np.radians(15)
 def is_worth_it(bright, at_depth):
     """Whether the bright part of a map, a `Split`, is to become lights."""
     least = LEAST_SHARE_AT_DEPTH if at_depth else LEAST_SHARE
-    return bright.share >= least and bright.share >= LEAST_CONCENTRATION * bright.area
+    return bright.share >= least and _stands_out(bright)
+
+
+def _stands_out(bright):
+    return bright.share >= LEAST_CONCENTRATION * bright.area
 
 
 def fewest_lights(samples):
@@ -69,9 +73,12 @@ def reason(bright, count, is_default):
     if not bright.share:
         return "every part of this map is as bright as the others: left alone"
     found = f"the brightest {percent(bright.area)} of the sphere hold {percent(bright.share)} of the light"
+    if not count and not is_default:
+        return f"{found}: no lights, as asked"
+    if not count and _stands_out(bright):
+        return f"{found}, too little for lights to help: left alone"
     if not count:
-        left = f"no part of this map stands out ({found})" if is_default else found
-        return f"{left}: {'left alone' if is_default else 'no lights, as asked'}"
+        return f"no part of this map stands out ({found}): left alone"
     return f"{found}: {count} light{'s' if count > 1 else ''}{'' if is_default else ', as asked'}"
 
 
