@@ -60,9 +60,11 @@ def extract_lights(image, method="hybrid", count=None, threshold=None, depth=Non
 
     method: "hybrid" makes lights of the bright part alone (section 3.2): split, sampled by Penrose tiles,
     clustered with F2 to `count`, each light the Voronoi cell of its cluster within the bright part. All
-    others sample the whole map and leave nothing. count: None lets the map choose, which may be none at all;
-    a smaller bright part gives fewer. threshold: share p of the light for the bright part, None for the
-    two-trapezoid rule. depth: (H, W) along the ray [m], +inf for none; the lights get positions.
+    others sample the whole map and leave nothing. Every light lies in the middle of its region's light.
+
+    count: None lets the map choose, which may be none at all; a smaller bright part gives fewer. threshold:
+    share p of the light for the bright part, None for the two-trapezoid rule. depth: (H, W) along the ray
+    [m], +inf for none; the lights get positions.
 
     Raises: ValueError for another method, a threshold outside (0, 1) or with another method than hybrid, a
     count below 0 (1 for the others), a depth of another shape, and what `check_light_map` refuses.
@@ -84,7 +86,7 @@ def extract_lights(image, method="hybrid", count=None, threshold=None, depth=Non
     else:
         samples = WHOLE_MAP[method](image, count or WHOLE_MAP_LIGHTS)
         reason = f"the whole map as {len(samples)} light{'s' if len(samples) > 1 else ''}, by {method}"
-    samples = _strongest_first(samples)
+    samples = _centred(image, samples)
     residual = image.copy()
     residual[samples.partition >= 0] = 0
     share = float(samples.luminance.sum() / _light(image))
@@ -102,10 +104,9 @@ def _bright_lights(image, count, threshold, at_depth):
     many = _bright_samples(image, bright.mask)
     directions = next(clusterings(many, count))[1] if count else choice.fewest_lights(many)
     samples = samples_from_sites(image, directions, bright.mask)
-    directions = mean_directions(image, samples)
-    is_weak = np.zeros(len(samples), bool) if count else _is_weak(samples)
-    groups = np.where(is_weak, -1, np.cumsum(~is_weak) - 1)
-    samples = combined(samples, groups, directions[~is_weak])
+    if count is None:
+        kept = samples.luminance >= LEAST_LIGHT * samples.luminance.sum()
+        samples = combined(samples, np.where(kept, np.cumsum(kept) - 1, -1), samples.directions[kept])
     return samples, bright.share, choice.reason(bright, len(samples), count is None)
 
 
@@ -121,15 +122,12 @@ def _bright_samples(image, mask):
     return samples_from_partition(image, uv, partition)
 
 
-def _is_weak(samples):
-    return samples.luminance < LEAST_LIGHT * samples.luminance.sum()
-
-
-def _strongest_first(samples):
+def _centred(image, samples):
+    """The samples, the strongest first, each in the middle of its region's light."""
     if not len(samples):
         return samples
     order = np.argsort(-samples.luminance, kind="stable")
-    return combined(samples, np.argsort(order), samples.directions[order])
+    return combined(samples, np.argsort(order), mean_directions(image, samples)[order])
 
 
 def _none(shape):

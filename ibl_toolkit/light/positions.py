@@ -12,34 +12,46 @@ LEAST_WITH_DEPTH = 0.5
 def moments(image, partition, count, depth=None):
     """Per region: power Σ P and Σ P ω, or Σ P z ω where there is depth; (count, 4), P = luminance · Ω.
 
-    With `depth` (H, W) [m], only pixels of finite depth count.
+    With `depth` (H, W) [m], only pixels of finite depth count. Sums run over the runs of one number in a row.
     """
     height, width = partition.shape
-    middles = (np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height
-    around = equirectangular.direction_from_uv(np.stack([middles[0], np.full(width, 0.5)], axis=1))
-    upwards = equirectangular.direction_from_uv(np.stack([np.full(height, 0.5), middles[1]], axis=1))
+    around, upwards = _around(width), _upwards(height)
     solid_angles = equirectangular.row_solid_angles(width, height)
-    total = np.zeros((count, 4))
+    total = np.zeros((count + 1, 4))  # the first for pixels outside, -1
     for rows in strips(height):
-        row, column = np.nonzero(partition[rows] >= 0)
-        if not row.size:
+        numbers = partition[rows]
+        if numbers.max() < 0:
             continue
-        numbers = partition[rows][row, column]
-        power = luminance(image[rows])[row, column] * solid_angles[rows][row]
-        length = np.ones(row.size)
+        power = luminance(image[rows]) * solid_angles[rows, None]
+        weighted = power
         if depth is not None:
-            length = depth[rows][row, column]
-            power = np.where(np.isfinite(length), power, 0)
-            length = np.where(np.isfinite(length), length, 0)
-        horizontal = power * length * upwards[rows, 0][row]
-        weights = (
-            power,
-            horizontal * around[column, 0],
-            horizontal * around[column, 1],
-            power * length * upwards[rows, 2][row],
+            power = np.where(np.isfinite(depth[rows]), power, 0)
+            weighted = power * np.where(np.isfinite(depth[rows]), depth[rows], 0)
+        is_start = np.ones(numbers.shape, bool)
+        np.not_equal(numbers[:, 1:], numbers[:, :-1], out=is_start[:, 1:])
+        starts = np.flatnonzero(is_start)
+        row = starts // width
+        x, y, one, own = (
+            np.add.reduceat(values.ravel(), starts)
+            for values in (weighted * around[:, 0], weighted * around[:, 1], weighted, power)
         )
-        total += np.stack([np.bincount(numbers, weight, count) for weight in weights], axis=1)
-    return total
+        horizontal, up = upwards[rows][row].T
+        sums = np.stack([own, horizontal * x, horizontal * y, up * one], axis=1)
+        for k in range(4):
+            total[:, k] += np.bincount(numbers.ravel()[starts] + 1, sums[:, k], count + 1)
+    return total[1:]
+
+
+def _around(width):
+    """cos φ and sin φ of every column, (W, 2)."""
+    u = (np.arange(width) + 0.5) / width
+    return equirectangular.direction_from_uv(np.stack([u, np.full(width, 0.5)], axis=1))[:, :2]
+
+
+def _upwards(height):
+    """cos θ and sin θ of every row, (H, 2)."""
+    v = (np.arange(height) + 0.5) / height
+    return equirectangular.direction_from_uv(np.stack([np.full(height, 0.5), v], axis=1))[:, ::2]
 
 
 def mean_directions(image, samples):
