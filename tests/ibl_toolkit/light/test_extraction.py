@@ -170,6 +170,21 @@ def test_few_lights_for_a_wide_bright_sky_are_told():
     assert any("wider than 30°" in text for text in found.warnings)
 
 
+def test_one_light_for_two_lamps_stands_between_them():
+    image, towards = room(lamps=[(1, 0.4, 0), (1, -0.4, 0)])
+    (direction,) = extract_lights(image, count=1).samples.directions
+    weights = np.array([1, 0.5])  # of their radiance
+    assert direction @ (weights @ towards) / np.linalg.norm(weights @ towards) > np.cos(DIRECTION)
+
+
+def test_a_very_bright_lamp_leaves_the_others_in_the_residual():
+    image, towards = room(radiance=30.0)
+    image[equirectangular.pixel_directions(*SIZE) @ (0, 0.6, -0.8) > np.cos(0.1)] = 1e4
+    assert len(extract_lights(image).samples) == 1
+    by_hand = extract_lights(image, count=5, threshold=0.9915)
+    assert (by_hand.samples.directions @ towards.T).max(axis=0).min() > np.cos(3 * DIRECTION)
+
+
 def test_many_pixels_are_sampled_by_penrose_tiles():
     image, towards = room(size=(512, 256), radius=0.3)
     found = extract_lights(image, count=4)
