@@ -94,7 +94,7 @@ def restored(image: np.ndarray, clipping: Clipping, true_irradiance) -> np.ndarr
     """A copy of the map (H, W, 3) whose plateau brings `true_irradiance`: (3,) RGB, or its luminance.
 
     Irradiance is that of a surface that faces the light, in the map's radiance times sr, all of the light's
-    pixels together; they are raised by one factor per channel, or by one for all if a luminance is given.
+    pixels together. Each channel is raised by one radiance; a luminance raises all by one factor.
 
     Raises: ValueError without a plateau, or where less light is asked for than is there.
 
@@ -109,14 +109,18 @@ def restored(image: np.ndarray, clipping: Clipping, true_irradiance) -> np.ndarr
     there = clipping.irradiance
     if wanted.shape not in ((), (3,)) or not np.isfinite(wanted).all():
         raise ValueError(f"irradiance is {true_irradiance}: must be one finite number, or three, RGB")
-    factors = wanted / (LUMINANCE @ there) if wanted.ndim == 0 else wanted / np.maximum(there, 1e-30)
-    if (factors < 1 - PLATEAU).any():
+    least = LUMINANCE @ there if wanted.ndim == 0 else there
+    if (wanted < (1 - PLATEAU) * least).any():
         raise ValueError(
             f"irradiance is {np.round(wanted, 6).tolist()}: the clipped light brings "
-            f"{np.round(there, 6).tolist()} already, and cannot have brought less"
+            f"{np.round(least, 6).tolist()} already, and cannot have brought less"
         )
     result = image.astype(np.float32, copy=True)
-    result[clipping.mask] *= np.broadcast_to(factors, 3).astype(np.float32)
+    if wanted.ndim == 0:
+        result[clipping.mask] *= np.float32(wanted / least)
+    else:  # no factor would do for a channel that is 0
+        missing = np.maximum(wanted - there, 0) / clipping.solid_angle
+        result[clipping.mask] += missing.astype(np.float32)
     return result
 
 

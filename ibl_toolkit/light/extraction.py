@@ -15,7 +15,7 @@ from .importance import importance_sampling
 from .light_map import LUMINANCE, check_count, check_light_map, irradiance
 from .median_cut import median_cut, variance_cut
 from .penrose import penrose_sampling
-from .positions import mean_directions, positions_at_depth
+from .positions import check_depth, mean_directions, positions_at_depth
 from .samples import LightSamples, combined, samples_from_partition, samples_from_sites
 from .split import split
 
@@ -81,8 +81,10 @@ def extract_lights(image, method="hybrid", count=None, threshold=None, depth=Non
         raise ValueError(f"threshold is {threshold}: only the method hybrid splits the map, not {method}")
     if count is not None and not (count == 0 and method == "hybrid"):
         count = check_count(count)
+    if depth is not None:
+        depth = check_depth(depth, image)
     if method == "hybrid":
-        samples, threshold, reason = _bright_lights(image, count, threshold, depth is not None)
+        samples, threshold, reason = _bright_lights(image, count, threshold, depth)
     else:
         samples = WHOLE_MAP[method](image, count or WHOLE_MAP_LIGHTS)
         reason = f"the whole map as {len(samples)} light{'s' if len(samples) > 1 else ''}, by {method}"
@@ -95,9 +97,11 @@ def extract_lights(image, method="hybrid", count=None, threshold=None, depth=Non
     return Extraction(samples, residual, method, threshold, share, reason, warnings, positions)
 
 
-def _bright_lights(image, count, threshold, at_depth):
+def _bright_lights(image, count, threshold, depth):
     """Lights of the bright part, its share p, and the reason."""
     bright = split(image, threshold)
+    is_known = np.isfinite(depth[bright.mask]) if depth is not None else np.zeros(1, bool)
+    at_depth = 2 * np.count_nonzero(is_known) > is_known.size
     by_hand = count is not None or threshold is not None
     if count == 0 or not bright.share or not (by_hand or choice.is_worth_it(bright, at_depth)):
         return _none(bright.mask.shape), bright.share, choice.reason(bright, 0, count is None)

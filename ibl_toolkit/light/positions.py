@@ -62,6 +62,21 @@ def mean_directions(image, samples):
     return np.where(has_middle, sums / np.where(has_middle, lengths, 1), samples.directions)
 
 
+def check_depth(depth, image):
+    """The depth (H, W) as an array; ValueError for another shape, or NaN or not above 0.
+
+    >>> check_depth([[2.0, np.inf]], np.ones((1, 2, 3)))
+    array([[ 2., inf]])
+    """
+    if np.shape(depth) != image.shape[:2]:
+        raise ValueError(f"depth has shape {np.shape(depth)}; expected the light map's {image.shape[:2]}")
+    depth = np.asarray(depth)
+    wrong = np.count_nonzero(~(depth > 0))
+    if wrong:
+        raise ValueError(f"depth has {wrong} values that are NaN or not above 0; expected +inf for none")
+    return depth
+
+
 def positions_at_depth(image, samples, depth):
     """Positions (n, 3) [m], panorama frame: the mean of ω·z over each region, weighted by its light.
 
@@ -78,11 +93,7 @@ def positions_at_depth(image, samples, depth):
     array([[ 0.,  0.,  1.],
            [ 0.,  0., -1.]])
     """
-    if np.shape(depth) != image.shape[:2]:
-        raise ValueError(f"depth has shape {np.shape(depth)}; expected the light map's {image.shape[:2]}")
-    wrong = np.count_nonzero(~(depth > 0))
-    if wrong:
-        raise ValueError(f"depth has {wrong} values that are NaN or not above 0; expected +inf for none")
+    depth = check_depth(depth, image)
     sums = moments(image, samples.partition, len(samples), depth)
     has_place = sums[:, :1] > LEAST_WITH_DEPTH * samples.luminance[:, None]
     return np.where(has_place, sums[:, 1:] / np.where(has_place, sums[:, :1], 1), np.nan)

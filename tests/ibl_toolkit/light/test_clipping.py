@@ -89,6 +89,13 @@ def test_a_luminance_keeps_the_plateaus_colour():
     assert np.allclose(sun / sun[0], found.irradiance / found.irradiance[0])
 
 
+def test_a_channel_that_is_black_gets_its_light_too():
+    image = np.full((32, 64, 3), 0.1, np.float32)
+    image[8:10, 20:23] = 16, 2, 0
+    found = find_clipping(image)
+    assert np.allclose(irradiance(restored(image, found, (9, 5, 3)), found.mask), (9, 5, 3))
+
+
 @pytest.mark.parametrize("normal", [(0, 0, 1), (1, 0.2, 0.1)])
 def test_the_shadow_tells_the_suns_irradiance(normal):
     """Lit and shadowed radiance of a diffuse surface, from the whole map, with and without its sun."""

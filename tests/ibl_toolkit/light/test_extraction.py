@@ -118,6 +118,13 @@ def test_lamps_at_depth_have_positions_and_a_small_share_is_enough():
     assert np.allclose(found.positions, 2.5 * towards, atol=POSITION + 2.5 * 0.1**2 / 4)
 
 
+def test_a_depth_that_the_bright_part_lacks_does_not_count():
+    image, towards = room(radiance=15.0)
+    depth = np.full((64, 128), 2.5)
+    depth[(equirectangular.pixel_directions(*SIZE) @ towards.T).max(axis=2) > 0.9] = np.inf
+    assert len(extract_lights(image, depth=depth).samples) == 0
+
+
 def test_a_lamp_without_depth_has_no_position():
     image, towards = room()
     depth = np.full((64, 128), 2.5)
