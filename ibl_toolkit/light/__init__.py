@@ -1,1 +1,1 @@
-"""Light of a panorama: samplers, the split into a bright part and a residual, clustering (thesis, chapter 3)."""
+"""Light of a panorama: samplers, the split into a bright part and a residual, clustering (thesis, ch. 3)."""

@@ -63,23 +63,26 @@ def _spread(samples, groups, directions):
     return float(np.maximum(moments - powers * discs, 0).sum() / powers.sum())
 
 
-def reason(bright, count, is_default):
+def reason(bright, count, asked=None):
     """One sentence on what was chosen for a `Split` and why.
 
     >>> from .split import Split
-    >>> reason(Split(np.zeros((2, 4), bool), 0.61, 1.0, 0.15), 9, True)
+    >>> reason(Split(np.zeros((2, 4), bool), 0.61, 1.0, 0.15), 9)
     'the brightest 1.2 % of the sphere hold 61 % of the light: 9 lights'
     """
     if not bright.share:
         return "every part of this map is as bright as the others: left alone"
     found = f"the brightest {percent(bright.area)} of the sphere hold {percent(bright.share)} of the light"
-    if not count and not is_default:
+    if asked == 0:
         return f"{found}: no lights, as asked"
     if not count and _stands_out(bright):
         return f"{found}, too little for lights to help: left alone"
     if not count:
         return f"no part of this map stands out ({found}): left alone"
-    return f"{found}: {count} light{'s' if count > 1 else ''}{'' if is_default else ', as asked'}"
+    lights = f"{count} light{'s' if count > 1 else ''}"
+    if asked is None:
+        return f"{found}: {lights}"
+    return f"{found}: {lights}, {'as asked' if count == asked else f'for it has no room for {asked}'}"
 
 
 def percent(part):

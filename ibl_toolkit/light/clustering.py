@@ -80,6 +80,7 @@ def _frequency_terms(samples, frequency):
     if frequency == "F1":
         return ones, ones.copy(), False
     power = np.asarray(samples.irradiance, np.float64) @ LUMINANCE
+    power = power / max(power.max(), _LEAST_FREQUENCY)  # errors are kept as single floats
     if frequency == "F2":
         return power, ones, False
     return power, np.array(samples.solid_angles, np.float64), True

@@ -104,14 +104,14 @@ def _bright_lights(image, count, threshold, depth):
     at_depth = 2 * np.count_nonzero(is_known) > is_known.size
     by_hand = count is not None or threshold is not None
     if count == 0 or not bright.share or not (by_hand or choice.is_worth_it(bright, at_depth)):
-        return _none(bright.mask.shape), bright.share, choice.reason(bright, 0, count is None)
+        return _none(bright.mask.shape), bright.share, choice.reason(bright, 0, count)
     many = _bright_samples(image, bright.mask)
     directions = next(clusterings(many, count))[1] if count else choice.fewest_lights(many)
     samples = samples_from_sites(image, directions, bright.mask)
     if count is None:
         kept = samples.luminance >= LEAST_LIGHT * samples.luminance.sum()
         samples = combined(samples, np.where(kept, np.cumsum(kept) - 1, -1), samples.directions[kept])
-    return samples, bright.share, choice.reason(bright, len(samples), count is None)
+    return samples, bright.share, choice.reason(bright, len(samples), count)
 
 
 def _bright_samples(image, mask):

@@ -99,6 +99,12 @@ def test_f2_joins_dim_samples_and_f1_near_ones():
     assert cluster(samples, 3, frequency="F2").partition.tolist() == [[0, 1], [2, 2]]
 
 
+def test_very_strong_samples_are_merged_too():
+    many = scattered(30)
+    strong = LightSamples(many.uv, many.directions, many.irradiance * 1e60, many.solid_angles, many.partition)
+    assert np.array_equal(cluster(strong, 5).partition, cluster(many, 5).partition)
+
+
 def test_opposite_samples_of_equal_power_become_one():
     pair = LightSamples(
         np.zeros((2, 2)), np.array([[1.0, 0, 0], [-1, 0, 0]]), np.ones((2, 3)), np.ones(2),

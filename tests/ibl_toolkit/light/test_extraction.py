@@ -102,6 +102,14 @@ def test_what_is_asked_for_is_done_on_such_a_map_too():
     assert_closed(sky(), by_threshold)
 
 
+def test_a_bright_part_with_fewer_pixels_gives_fewer_lights():
+    image, _ = room(radius=0.05)
+    found = extract_lights(image, count=500)
+    assert len(found.samples) == np.count_nonzero(found.samples.partition >= 0) < 100
+    assert found.reason.endswith(f": {len(found.samples)} lights, for it has no room for 500")
+    assert extract_lights(image, count=3).reason.endswith("3 lights, as asked")
+
+
 def test_no_lights_may_be_asked_for():
     image, _ = room()
     found = extract_lights(image, count=0)
