@@ -102,7 +102,8 @@ def _regions(tables, count, plan):
         worth, find_cut = plan(tables, lit, sums)
         heapq.heappush(waiting, _Region((-worth, serial), rectangle, lit, sums, find_cut))
 
-    add(whole, whole, tables.by_row(whole).sum(axis=0))
+    profile, lit = _tight(tables, _tight(tables, whole, 0)[1], 1)
+    add(whole, lit, profile.sum(axis=0))
     while waiting and len(waiting) + len(uncuttable) < count:
         region = heapq.heappop(waiting)
         cut = region.find_cut()

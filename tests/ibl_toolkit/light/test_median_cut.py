@@ -55,11 +55,34 @@ def test_a_median_cut_goes_across_the_longer_side():
 
 
 def test_near_a_pole_azimuth_counts_little():
-    """A ring of the top rows, 7 times as wide in the image as high, is higher than wide."""
+    """Of two patches of the top rows, 4 and 7 times as wide in the image as high, one is higher than wide."""
     image = np.zeros((64, 128, 3), np.float32)
+    image[1:8, 20:50] = 1
+    partition = median_cut(image, 2).partition[1:8, 20:50]
+    assert (partition == partition[:, :1]).all()
     image[1:8, 20:70] = 1
-    partition = median_cut(image, 2).partition
-    assert (partition[1:8, 20:70] == partition[1:8, 20:21]).all()
+    partition = median_cut(image, 2).partition[1:8, 20:70]
+    assert (partition == partition[:1]).all()
+
+
+def test_black_surroundings_do_not_make_a_side_longer():
+    """A lamp wider than high, in the half that another lamp's height had made higher than wide."""
+    image = np.zeros((40, 80, 3), np.float32)
+    image[30:32, 10:20] = image[5:9, 60:64] = 1
+    power = luminous_power(image)
+    image[5:9, 60:64] *= 0.99 * power[30:32].sum() / power[5:9].sum()  # so that the first cut parts the lamps
+    lamp = median_cut(image, 3).partition[30:32, 10:20]
+    assert len(np.unique(lamp)) == 2
+    assert (lamp == lamp[:1]).all()
+
+
+@pytest.mark.parametrize("cut", CUTS)
+def test_a_cut_between_two_lamps_keeps_off_both(cut):
+    image = np.zeros((40, 80, 3), np.float32)
+    image[18:22, 10:14] = image[18:22, 50:54] = 1
+    partition = cut(image, 2).partition
+    assert (partition[:, :32] == partition[18, 10]).all()
+    assert (partition[:, 32:60] == partition[18, 50]).all()
 
 
 @pytest.mark.parametrize("seed", range(5))
