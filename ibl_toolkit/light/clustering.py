@@ -10,6 +10,8 @@ from .samples import combined
 
 FREQUENCIES = ("F1", "F2", "F3")
 """F1: 1, the distance alone counts. F2: the luminance of the region, integrated over it. F3: its mean."""
+_ROWS = 64
+"""Rows of the table of errors that are made at once."""
 _LEAST_FREQUENCY = 1e-300
 """Two clusters without light join at no error, not at 0/0."""
 
@@ -102,8 +104,9 @@ class _Clusters:
         self._numbers = np.arange(self.count)  # each row's cluster goes by the number of one of its samples
         self._parents = np.arange(self.count)  # of each number: itself, or the one it was merged into
         self._errors = np.empty((self.count, self.count), np.float32)
-        for row in range(self.count):
-            self._errors[row] = self._errors_with(row)
+        for first in range(0, self.count, _ROWS):
+            rows = np.arange(first, min(first + _ROWS, self.count))
+            self._errors[rows] = self._errors_with(rows)
         self._nearest = self._errors.argmin(axis=1)
         self._least = self._errors[self._numbers, self._nearest]
 
@@ -114,8 +117,7 @@ class _Clusters:
             return False
         j = int(self._nearest[i])
         self._join(i, j)
-        errors = self._errors_with(i)
-        self._errors[j] = self._errors[:, j] = np.inf
+        errors = self._errors_with(np.array([i]))[0]
         self._errors[i] = self._errors[:, i] = errors
         self._least[j] = np.inf
         closer = errors < self._least
@@ -136,23 +138,27 @@ class _Clusters:
         numbers = self._numbers[self._alive][order]
         return np.searchsorted(numbers, parents), self._directions[self._alive][order]
 
-    def _errors_with(self, row):
-        """E (n,) of the unions of this cluster with every other, infinite where none may be."""
-        offsets = self._directions - self._directions[row]
-        chords = np.sqrt(np.einsum("nk,nk->n", offsets, offsets)).astype(np.float32)
-        distances = 2 * np.arcsin(np.minimum(chords / 2, 1))
-        frequencies = self._frequencies
-        sums = np.maximum(frequencies + frequencies[row], _LEAST_FREQUENCY)
-        errors = distances * distances * (frequencies * frequencies[row] / sums)
-        errors[~self._alive | (distances >= self._widest)] = np.inf
-        errors[row] = np.inf
-        return errors.astype(np.float32)
+    def _errors_with(self, rows):
+        """E (m, n) of the unions of m clusters with every other, infinite where none may be."""
+        cosines = np.einsum("mk,nk->mn", self._directions[rows], self._directions)
+        squared_sines = np.clip(0.5 - 0.5 * cosines, 0, 1).astype(np.float32)  # of half the angles
+        distances = 2 * np.arcsin(np.sqrt(squared_sines))
+        own, others = self._frequencies[rows, None], self._frequencies
+        weights = own * others / np.maximum(own + others, _LEAST_FREQUENCY)
+        errors = distances * distances * weights.astype(np.float32)
+        errors[:, ~self._alive] = np.inf
+        if np.isfinite(self._widest):
+            errors[distances >= self._widest] = np.inf
+        errors[np.arange(len(rows)), rows] = np.inf
+        return errors
 
     def _choose(self, rows):
         """Find anew the partners of these clusters."""
+        gone = np.where(self._alive, np.float32(0), np.float32(np.inf))  # columns keep their old errors
         for row in rows:
-            self._nearest[row] = self._errors[row].argmin()
-            self._least[row] = self._errors[row, self._nearest[row]]
+            errors = self._errors[row] + gone
+            self._nearest[row] = errors.argmin()
+            self._least[row] = errors[self._nearest[row]]
 
     def _join(self, i, j):
         """Put cluster j into cluster i."""
