@@ -11,7 +11,9 @@ from .samples import combined
 FREQUENCIES = ("F1", "F2", "F3")
 """F1: 1, the distance alone counts. F2: the luminance of the region, integrated over it. F3: its mean."""
 _ROWS = 64
-"""Rows of the table of errors that are made at once."""
+"""Clusters whose errors with all others are in memory at once."""
+_FULL = 0.8
+"""Once no larger part of the clusters is left, the merged ones are dropped."""
 _LEAST_FREQUENCY = 1e-300
 """Two clusters without light join at no error, not at 0/0."""
 
@@ -26,8 +28,6 @@ def cluster(samples, count=None, least_angle=None, frequency="F2"):
     the first that is met ends it.
 
     -> LightSamples: irradiance and solid angles are sums, the partition has the new numbers.
-
-    Memory: 4 n² bytes for n samples.
 
     Raises: ValueError for another frequency, without a criterion, for a count below 1, or an angle outside
     (0, π].
@@ -89,9 +89,11 @@ def _frequency_terms(samples, frequency):
 
 
 class _Clusters:
-    """What is left of the samples, the error of every pair, and for each the partner it errs least with.
+    """What is left of the samples, and for each the partner with which it errs least.
 
-    Rows of merged clusters stay, at infinite error, until half of the table is of them.
+    A cluster whose partner was merged is stale: its error is then a lower bound, since all others were worse,
+    and it is looked at again only when it is the least of all. Merged clusters stay, at infinite error, until
+    they are too many.
     """
 
     def __init__(self, samples, frequency, widest):
@@ -103,29 +105,32 @@ class _Clusters:
         self._alive = np.ones(self.count, bool)
         self._numbers = np.arange(self.count)  # each row's cluster goes by the number of one of its samples
         self._parents = np.arange(self.count)  # of each number: itself, or the one it was merged into
-        self._errors = np.empty((self.count, self.count), np.float32)
-        for first in range(0, self.count, _ROWS):
+        self._nearest = np.zeros(self.count, np.int64)
+        self._least = np.full(self.count, np.inf, np.float32)
+        self._is_stale = np.zeros(self.count, bool)
+        for first in range(0, self.count, _ROWS):  # each pair once
             rows = np.arange(first, min(first + _ROWS, self.count))
-            self._errors[rows] = self._errors_with(rows)
-        self._nearest = self._errors.argmin(axis=1)
-        self._least = self._errors[self._numbers, self._nearest]
+            errors = self._errors_with(rows, first)
+            self._improve(rows, errors, first)
+            self._improve(np.arange(first, self.count), errors.T, first)
 
     def merge_cheapest(self):
         """Make one of the two clusters whose union errs least; False if no pair may be merged."""
         i = int(self._least.argmin())
+        while self._is_stale[i]:
+            self._choose(i)
+            i = int(self._least.argmin())
         if np.isinf(self._least[i]):
             return False
         j = int(self._nearest[i])
         self._join(i, j)
-        errors = self._errors_with(np.array([i]))[0]
-        self._errors[i] = self._errors[:, i] = errors
+        errors = self._choose(i)
         self._least[j] = np.inf
+        self._is_stale |= (self._nearest == i) | (self._nearest == j)
         closer = errors < self._least
         self._nearest[closer], self._least[closer] = i, errors[closer]
-        lost = (self._nearest == i) & ~closer | (self._nearest == j)
-        lost[i] = True
-        self._choose(np.flatnonzero(lost & self._alive))
-        if 2 * self.count < len(self._alive):
+        self._is_stale[closer] = self._is_stale[[i, j]] = False
+        if self.count < _FULL * len(self._alive):
             self._drop_empty_rows()
         return True
 
@@ -138,27 +143,34 @@ class _Clusters:
         numbers = self._numbers[self._alive][order]
         return np.searchsorted(numbers, parents), self._directions[self._alive][order]
 
-    def _errors_with(self, rows):
-        """E (m, n) of the unions of m clusters with every other, infinite where none may be."""
-        cosines = np.einsum("mk,nk->mn", self._directions[rows], self._directions)
+    def _errors_with(self, rows, first=0):
+        """E (m, n) of the unions of m clusters with those from `first` on, infinite where none may be."""
+        cosines = np.einsum("mk,nk->mn", self._directions[rows], self._directions[first:])
         squared_sines = np.clip(0.5 - 0.5 * cosines, 0, 1).astype(np.float32)  # of half the angles
         distances = 2 * np.arcsin(np.sqrt(squared_sines))
-        own, others = self._frequencies[rows, None], self._frequencies
+        own, others = self._frequencies[rows, None], self._frequencies[first:]
         weights = own * others / np.maximum(own + others, _LEAST_FREQUENCY)
         errors = distances * distances * weights.astype(np.float32)
-        errors[:, ~self._alive] = np.inf
+        errors[:, ~self._alive[first:]] = np.inf
         if np.isfinite(self._widest):
             errors[distances >= self._widest] = np.inf
-        errors[np.arange(len(rows)), rows] = np.inf
+        errors[np.arange(len(rows)), rows - first] = np.inf
         return errors
 
-    def _choose(self, rows):
-        """Find anew the partners of these clusters."""
-        gone = np.where(self._alive, np.float32(0), np.float32(np.inf))  # columns keep their old errors
-        for row in rows:
-            errors = self._errors[row] + gone
-            self._nearest[row] = errors.argmin()
-            self._least[row] = errors[self._nearest[row]]
+    def _improve(self, rows, errors, first):
+        """Take the partners, numbered from `first`, with which these clusters err less than before."""
+        least = errors.min(axis=1)
+        better = least < self._least[rows]
+        self._least[rows[better]] = least[better]
+        self._nearest[rows[better]] = errors[better].argmin(axis=1) + first
+
+    def _choose(self, row):
+        """Find the partner of a cluster -> its errors with all others, (n,)."""
+        errors = self._errors_with(np.array([row]))[0]
+        self._nearest[row] = errors.argmin()
+        self._least[row] = errors[self._nearest[row]]
+        self._is_stale[row] = False
+        return errors
 
     def _join(self, i, j):
         """Put cluster j into cluster i."""
@@ -178,8 +190,7 @@ class _Clusters:
 
     def _drop_empty_rows(self):
         rows = np.flatnonzero(self._alive)
-        self._errors = self._errors[np.ix_(rows, rows)]
-        names = "_above", "_below", "_frequencies", "_directions", "_alive", "_numbers", "_least"
+        names = "_above", "_below", "_frequencies", "_directions", "_alive", "_numbers", "_least", "_is_stale"
         for name in names:
             setattr(self, name, getattr(self, name)[rows])
         self._nearest = np.searchsorted(rows, self._nearest[rows])
