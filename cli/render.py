@@ -159,6 +159,7 @@ def _render(scene, camera, picture, paths, options, progress):
                     scene.frame_set(number)
                 with blender.errors_of(path):
                     rendering.write_render(scene, path)
+    lights = report.at_infinity if picture.method == "directional" else report.at_depth
     return {
         "seconds": _seconds(progress.seconds, report.seconds),
         "method": picture.method,
@@ -168,8 +169,9 @@ def _render(scene, camera, picture, paths, options, progress):
         "camera": options.camera or camera.name,
         "denoised": picture.denoise,
         "coverage": report.coverage,
-        "lights": report.light_count,
-        "light_share": report.light_share,
+        "lights": lights.count,
+        "light_share": lights.share,
+        "light_reason": lights.reason,
         "frames": _frames(paths, missing),
     }
 

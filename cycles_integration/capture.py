@@ -29,8 +29,8 @@ POINT_FILTER = 0.01
 
 
 @contextlib.contextmanager
-def temporary_scene(place: Place, width: int, samples: int):
-    """A Cycles scene of the place's surfaces and lights, seen by a panoramic camera at its origin.
+def temporary_scene(place: Place, width: int, samples: int, *, with_lamps: bool = True):
+    """A Cycles scene of the place's surfaces and their lamps, seen by a panoramic camera at its origin.
 
     Its image is width × width/2 and lies in the panorama's own frame, like the photograph. Background, film,
     filter and passes are the caller's to set.
@@ -38,8 +38,9 @@ def temporary_scene(place: Place, width: int, samples: int):
     scene = bpy.data.scenes.new("Panorama Capture")
     camera = panorama_camera(place)
     try:
-        for collection in (place.surfaces, place.lights):
-            scene.collection.children.link(collection)
+        scene.collection.children.link(place.surfaces)
+        if not with_lamps:
+            scene.view_layers[0].layer_collection.children[0].children[place.lights.name].exclude = True
         scene.collection.objects.link(camera)
         scene.camera = camera
         render = scene.render

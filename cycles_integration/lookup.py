@@ -53,6 +53,34 @@ def environment_texture(tree, image, direction) -> bpy.types.NodeSocket:
     return add(tree, "ShaderNodeTexEnvironment", {"Vector": direction}, image=image).outputs["Color"]
 
 
+def in_panorama_frame(tree, origin: bpy.types.Object, direction) -> bpy.types.NodeSocket:
+    """A direction of the world in the panorama frame.
+
+    Texture Coordinate → Object would carry the origin's translation too, so a Mapping follows the rotation by
+    drivers; of type TEXTURE it applies the inverse.
+    """
+    mapping = add(tree, "ShaderNodeMapping", {"Vector": direction}, vector_type="TEXTURE")
+    for axis in range(3):
+        driver = mapping.inputs["Rotation"].driver_add("default_value", axis).driver
+        driver.type = "SUM"
+        variable = driver.variables.new()
+        variable.type = "TRANSFORMS"
+        variable.targets[0].id = origin
+        variable.targets[0].transform_type = f"ROT_{'XYZ'[axis]}"
+        variable.targets[0].transform_space = "WORLD_SPACE"
+    return mapping.outputs[0]
+
+
+def is_looked_at(tree) -> bpy.types.NodeSocket:
+    """1 for camera, glossy and transmission rays, which see the picture.
+
+    Where Cycles aims at a light or samples the World, none of these is set.
+    """
+    rays = add(tree, "ShaderNodeLightPath").outputs
+    either = maths(tree, "MAXIMUM", rays["Is Camera Ray"], rays["Is Glossy Ray"])
+    return maths(tree, "MAXIMUM", either, rays["Is Transmission Ray"])
+
+
 def after_diffuse_bounce(tree) -> bpy.types.NodeSocket:
     """1 on paths that have had a diffuse bounce: to these the extracted lights give the bright part."""
     depth = add(tree, "ShaderNodeLightPath").outputs["Diffuse Depth"]

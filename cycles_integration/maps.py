@@ -41,7 +41,7 @@ def render_depth(scene: bpy.types.Scene, place: Place, width: int) -> DepthMap:
         raise ValueError(
             "the place has no surfaces: build shapes, or give objects the role SUPPORT or ENVIRONMENT"
         )
-    with capture.temporary_scene(place, width, samples=1) as taken:
+    with capture.temporary_scene(place, width, samples=1, with_lamps=False) as taken:
         capture.sample_pixel_centres(taken)
         taken.world = None
         layer = taken.view_layers[0]
@@ -84,5 +84,5 @@ def _render_light(scene, place, width, samples, material):
         taken.cycles.use_denoising = True
         taken.cycles.max_bounces = taken.cycles.diffuse_bounces = taken.cycles.glossy_bounces = 1
         material.cycles.emission_sampling = "NONE" if place.lights.objects else "AUTO"
-        taken.view_layers[0].material_override = material
-        return capture.render_passes(taken)["Combined"][..., :3]
+        with materials.worn_by(roles.real_objects(scene), material):
+            return capture.render_passes(taken)["Combined"][..., :3]

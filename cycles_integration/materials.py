@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import bpy
 
 from . import lookup, roles
@@ -82,6 +84,19 @@ def gloss_material(place: Place) -> bpy.types.Material:
     return _probe(place, "Panorama Gloss", _reflection)
 
 
+@contextlib.contextmanager
+def worn_by(objects: list[bpy.types.Object], material: bpy.types.Material):
+    """Let objects wear a material for a while; the lamps keep theirs, as in no override of the layer."""
+    own = {thing.data: list(thing.data.materials) for thing in objects}
+    for mesh in own:
+        _dress(mesh, [material])
+    try:
+        yield
+    finally:
+        for mesh, before in own.items():
+            _dress(mesh, before)
+
+
 def assign(scene: bpy.types.Scene, place: Place):
     """Give every real object the material of its role.
 
@@ -92,8 +107,13 @@ def assign(scene: bpy.types.Scene, place: Place):
     for material in by_role.values():
         material.cycles.emission_sampling = "NONE" if place.lights.objects else "AUTO"
     for thing in roles.real_objects(scene):
-        thing.data.materials.clear()
-        thing.data.materials.append(by_role[thing.panorama_role])
+        _dress(thing.data, [by_role[thing.panorama_role]])
+
+
+def _dress(mesh, materials):
+    mesh.materials.clear()
+    for material in materials:
+        mesh.materials.append(material)
 
 
 def _probe(place, name, seen_by_camera):

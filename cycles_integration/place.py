@@ -26,6 +26,7 @@ class Place(bpy.types.PropertyGroup):
     support: bpy.props.PointerProperty(type=bpy.types.Collection)
     environment: bpy.props.PointerProperty(type=bpy.types.Collection)
     lights: bpy.props.PointerProperty(type=bpy.types.Collection)
+    suns: bpy.props.PointerProperty(type=bpy.types.Collection)
     catchers: bpy.props.PointerProperty(type=bpy.types.Collection)
     origin: bpy.props.PointerProperty(type=bpy.types.Object)
     catcher: bpy.props.PointerProperty(type=bpy.types.Object)
@@ -34,6 +35,8 @@ class Place(bpy.types.PropertyGroup):
     irradiance: bpy.props.PointerProperty(type=bpy.types.Image)
     gloss: bpy.props.PointerProperty(type=bpy.types.Image)
     sky: bpy.props.PointerProperty(type=bpy.types.Image)
+    sun_numbers: bpy.props.PointerProperty(type=bpy.types.Image)
+    sun_quiet: bpy.props.PointerProperty(type=bpy.types.Image)
     plate: bpy.props.PointerProperty(type=bpy.types.Image)
 
 
@@ -54,7 +57,8 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
         place.surfaces = _child_collection(place.collection, "Panorama Surfaces")
         place.support = _child_collection(place.surfaces, "Panorama Support")
         place.environment = _child_collection(place.surfaces, "Panorama Environment")
-        place.lights = _child_collection(place.collection, "Panorama Lights")
+        place.lights = _child_collection(place.surfaces, "Panorama Lamps")
+        place.suns = _child_collection(place.collection, "Panorama Suns")
         place.origin = _empty(place.collection, ORIGIN)
         place.origin.empty_display_type, place.origin.empty_display_size = "ARROWS", 0.2
         place.catchers = _child_collection(place.collection, "Panorama Catchers")
@@ -82,9 +86,8 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
     View layers leave out whole collections, never single objects; so roles have collections of their own.
     """
     collections = {roles.SUPPORT: place.support, roles.ENVIRONMENT: place.environment}
-    for thing in list(scene.objects):
-        if thing.type == "MESH" and thing.panorama_role in collections:
-            _move(thing, collections[thing.panorama_role])
+    for thing in roles.real_objects(scene):
+        _move(thing, collections[thing.panorama_role])
     ours = {place.collection, *place.collection.children_recursive}
     for thing in list(scene.objects):
         if thing.type != "MESH" or thing.panorama_role == roles.SYNTHETIC:
@@ -92,7 +95,7 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
             if (
                 stray
                 and thing not in (place.origin, place.catcher)
-                and thing.name not in place.lights.objects
+                and thing.name not in place.suns.objects
             ):
                 _move(thing, _synthetic_collection(scene))
 

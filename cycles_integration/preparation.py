@@ -8,13 +8,22 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..ibl_toolkit.emitters import split_bright_part
-from . import blender_images, lights, lookup, maps, materials, world
+from ..ibl_toolkit.light.lamps import split_into_lamps
+from . import blender_images, lamps, lookup, maps, materials, suns, world
 from .place import Place, place_of, sort_objects
 
 LIGHTS_WIDTH = 2048
 """Bright regions are looked for on a map of at most this width."""
 IRRADIANCE_WIDTH, IRRADIANCE_SAMPLES = 512, 64
+
+
+@dataclass(frozen=True)
+class Lights:
+    """Lights that were taken out of a map: how many, with which share of its light, and why."""
+
+    count: int = 0
+    share: float = 0.0
+    reason: str = ""
 
 
 @dataclass
@@ -23,22 +32,24 @@ class Preparation:
 
     seconds: dict[str, float] = field(default_factory=dict)
     coverage: float = 0.0
-    light_count: int = 0
-    light_share: float = 0.0
+    at_depth: Lights = field(default_factory=Lights)
+    """Lamps on the surfaces."""
+    at_infinity: Lights = field(default_factory=Lights)
+    """Suns, for the method that lights from infinity alone."""
 
 
 def prepare(scene: bpy.types.Scene, most_lights: int | None = None) -> Preparation:
     """Make the maps, lights and materials of a place.
 
-    ``most_lights``: at most so many lights are taken out of the map, the strongest; 0 for none, None for as
-    many as there are. Raises ValueError where the scene has no place or no surfaces.
+    ``most_lights``: at most so many lights are taken out of the map, the strongest; 0 for none; None lets the
+    map decide. Raises ValueError where the scene has no place or no surfaces.
     """
     place = place_of(scene)
     report = Preparation()
     sort_objects(scene, place)
     depth = _timed(report, "depth", lambda: maps.render_depth(scene, place, _lights_width(place)))
     report.coverage = depth.coverage
-    _timed(report, "lights", lambda: _split_lights(place, depth, most_lights, report))
+    _timed(report, "lights", lambda: _split_lights(scene, place, depth, most_lights, report))
     lookup.build_lookup(place)
     materials.assign(scene, place)
     world.build_world(scene, place)
@@ -47,17 +58,54 @@ def prepare(scene: bpy.types.Scene, most_lights: int | None = None) -> Preparati
     return report
 
 
-def _split_lights(place: Place, depth: maps.DepthMap, most_lights: int | None, report: Preparation):
-    """Replace the place's lights, residual map and sky."""
-    image = maps.shrink(blender_images.array_from_image(place.image), depth.depth.shape[1])
+def prepare_suns(scene: bpy.types.Scene, place: Place, most_lights: int | None = None) -> Lights:
+    """Make the suns of the whole map at infinity and a World that lights with what they leave of it.
+
+    ``most_lights`` as in `prepare`. A place without surfaces will do.
+    """
+    split = suns.replace_suns(place, _light_map(place, _lights_width(place)), most_lights)
+    world.build_world(scene, place, whole_map_lights=True)
+    return Lights(len(split.discs), split.share, _reason_for_suns(split, most_lights))
+
+
+def _split_lights(scene, place: Place, depth: maps.DepthMap, most_lights: int | None, report: Preparation):
+    """Replace the place's lamps and suns, what they leave of the map, and the sky."""
+    image = _light_map(place, depth.depth.shape[1])
     at_depth = np.where(depth.is_support, np.inf, depth.depth)
-    bright = split_bright_part(image, at_depth, most=most_lights)
-    lights.replace_lights(place, bright.emitters)
-    residual = bright.residual if bright.emitters else None
-    place.residual = blender_images.replace_image(place.residual, "Panorama Residual", residual)
+    split = split_into_lamps(image, at_depth, most_lights)
+    lookup.build_lookup(place)  # the lamps' materials use it
+    lamps.replace_lamps(place, split.lamps)
+    quiet = split.quiet if split.lamps else None
+    place.residual = blender_images.replace_image(place.residual, "Panorama Residual", quiet)
     sky = None if np.isfinite(depth.depth).all() else np.where(np.isfinite(depth.depth)[..., None], 0, image)
     place.sky = blender_images.replace_image(place.sky, "Panorama Sky", sky)
-    report.light_count, report.light_share = len(bright.emitters), bright.share
+    report.at_depth = Lights(len(split.lamps), split.share, _reason_for_lamps(split, most_lights))
+    report.at_infinity = prepare_suns(scene, place, most_lights)
+
+
+def _light_map(place, width):
+    """The photograph at a width, without the radiance below zero that denoisers and resizers leave."""
+    return np.maximum(maps.shrink(blender_images.array_from_image(place.image), width), 0)
+
+
+def _reason_for_lamps(split, most_lights):
+    if most_lights == 0:
+        return "no lights, as asked"
+    if not split.lamps:
+        return "no surface stands out of this map: left alone"
+    return f"{_counted(len(split.lamps), 'lamp')} with {100 * split.share:.0f} % of the light"
+
+
+def _reason_for_suns(split, most_lights):
+    if most_lights == 0:
+        return "no lights, as asked"
+    if not split.discs:
+        return "without its lamps this map would not be quiet: left to Cycles' own sampling"
+    return f"{_counted(len(split.discs), 'sun')} with {100 * split.share:.0f} % of the light"
+
+
+def _counted(count, thing):
+    return f"{count} {thing}{'' if count == 1 else 's'}"
 
 
 def _measure_light(scene, place):

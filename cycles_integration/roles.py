@@ -5,6 +5,8 @@ from __future__ import annotations
 import bpy
 
 SYNTHETIC, SUPPORT, ENVIRONMENT = "SYNTHETIC", "SUPPORT", "ENVIRONMENT"
+LAMP = "panorama_lamp"
+"""Custom property of the meshes that stand for the lamps of the photograph: ours, not the artist's."""
 ROLES = (
     (SYNTHETIC, "Synthetic", "A new object: lit by the place, it casts shadows on it and reflects it"),
     (
@@ -21,8 +23,9 @@ ROLES = (
 
 
 def real_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Return the scene's meshes that stand for real surfaces."""
-    return [o for o in scene.objects if o.type == "MESH" and o.panorama_role != SYNTHETIC]
+    """Return the scene's meshes that stand for real surfaces; the lamps on them are left out."""
+    meshes = (o for o in scene.objects if o.type == "MESH" and LAMP not in o)
+    return [o for o in meshes if o.panorama_role != SYNTHETIC]
 
 
 def with_role(scene: bpy.types.Scene, role: str) -> list[bpy.types.Object]:

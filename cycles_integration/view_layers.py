@@ -20,7 +20,7 @@ def add_objects(scene, place, *, as_catchers: bool, with_environment: bool) -> b
     """The new objects in the place, whose surfaces are shadow catchers or plainly rendered."""
     layer = _layer(scene, place, OBJECTS)
     layer_collection(layer, place.surfaces).exclude = as_catchers
-    layer_collection(layer, place.lights).exclude = not with_environment
+    layer_collection(layer, place.suns).exclude = with_environment
     place.catcher.hide_render = not as_catchers
     place.catcher.instance_collection = place.surfaces if with_environment else place.support
     layer.cycles.use_pass_shadow_catcher = as_catchers
@@ -44,7 +44,7 @@ def add_without(scene, place) -> bpy.types.ViewLayer:
 def add_mask(scene, place) -> bpy.types.ViewLayer:
     """The new objects' coverage: the real surfaces cut holes."""
     layer = _layer(scene, place, MASK)
-    for collection in (place.support, place.environment):  # the flag does not reach child collections
+    for collection in (place.support, place.environment, place.lights):  # the flag reaches no children
         layer_collection(layer, collection).holdout = True
     layer.material_override = materials.black_material(place)
     layer.samples = MASK_SAMPLES
@@ -78,6 +78,7 @@ def _real_only(scene, place, name):
     for child in layer.layer_collection.children:
         if child.collection != place.collection:
             child.exclude = True
+    layer_collection(layer, place.suns).exclude = True
     return layer
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from .emitters import LUMINANCE
+from .light.light_map import LUMINANCE
 
 VISIBLE = 0.02
 """Display values that differ by more than this count as changed."""

@@ -6,8 +6,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from ..cycles_integration.methods import CATCHER, METHODS
 
 LIGHTS = (
-    ("AUTO", "All Found", "Every bright lamp of the photograph becomes a light at its depth"),
-    ("NONE", "None", "The surfaces light as they show; small lamps then leave noise"),
+    ("AUTO", "Automatic", "The bright lamps of the photograph become lights, where that lessens the noise"),
+    ("NONE", "None", "The photograph lights as it shows; small lamps then leave noise"),
     ("LIMIT", "At Most", "Only so many lamps, the strongest, become lights"),
 )
 
@@ -58,5 +58,5 @@ class PanoramaJob(bpy.types.PropertyGroup):
     )
     seconds: FloatProperty()
     coverage: FloatProperty()
-    light_count: IntProperty()
-    light_share: FloatProperty()
+    lights_at_depth: StringProperty()
+    lights_at_infinity: StringProperty()

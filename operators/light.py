@@ -30,9 +30,10 @@ class PANORAMA_OT_prepare(Reporting, bpy.types.Operator):
         most = {"AUTO": None, "NONE": 0, "LIMIT": job.most_lights}[job.lights]
         spent = prepare(context.scene, most)
         job.seconds, job.coverage = sum(spent.seconds.values()), spent.coverage
-        job.light_count, job.light_share = spent.light_count, spent.light_share
+        job.lights_at_depth, job.lights_at_infinity = spent.at_depth.reason, spent.at_infinity.reason
         state.maps_are_old = False
-        return f"{spent.light_count} lights, {100 * spent.coverage:.0f} % with depth, {job.seconds:.1f} s"
+        found = f"{spent.at_depth.reason}, {100 * spent.coverage:.0f} % with depth"
+        return f"{found}, {job.seconds:.1f} s"
 
 
 class PANORAMA_OT_export_depth(Reporting, ExportHelper, bpy.types.Operator):

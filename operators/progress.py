@@ -3,6 +3,7 @@
 from mathutils import Vector
 
 from ..cycles_integration import picture_coordinates, roles
+from ..cycles_integration.methods import DIRECTIONAL
 from ..cycles_integration.pieces import PIECE
 from . import conversion
 
@@ -91,9 +92,15 @@ def new_objects(scene) -> list:
     return [o for o in scene.objects if o.type == "MESH" and o.panorama_role == roles.SYNTHETIC]
 
 
+def lights_found(scene) -> str:
+    """What became lights for the chosen method, and why."""
+    job = scene.panorama_set.job
+    return job.lights_at_infinity if job.method == DIRECTIONAL else job.lights_at_depth
+
+
 def own_lights(scene) -> list:
     """The artist's own lights, which light new objects beside those of the place."""
-    ours = scene.panorama_place.lights
+    ours = scene.panorama_place.suns
     return [o for o in scene.objects if o.type == "LIGHT" and not (ours and o.name in ours.objects)]
 
 

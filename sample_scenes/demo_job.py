@@ -99,7 +99,7 @@ def run_job(scene: bpy.types.Scene, folder: Path, effort: Effort, progress) -> d
         "calibration": calibration.to_json(),
         "shapes": [piece.to_json() for piece in pieces],
         "depth": depth_figures(depth),
-        "lights": {"count": prepared.light_count, "share": prepared.light_share},
+        "lights": {"count": prepared.at_depth.count, "share": prepared.at_depth.share},
         "errors": {
             "untouched": difference(pictures["panorama"], photograph, ~depth.is_support & ~covered),
             "white_dots": {name: new_dots(image, befores[name]) for name, image in pictures.items()},

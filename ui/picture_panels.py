@@ -81,7 +81,7 @@ class PANORAMA_PT_light(Step, bpy.types.Panel):
             if scene.panorama_set.maps_are_old:
                 self.say(context, "The place has changed: prepare again", "FILE_REFRESH")
             box = layout.box().column(align=True)
-            figure(box, "Lights", f"{job.light_count} with {100 * job.light_share:.0f} % of the light")
+            paragraph(box, context, f"Lights: {progress.lights_found(scene)}")
             figure(box, "With depth", f"{100 * job.coverage:.0f} % of the sphere")
             figure(box, "Took", f"{job.seconds:.1f} s")
         layout.operator("panorama.export_depth", text="Write RGB-D...", icon="EXPORT")

@@ -85,7 +85,7 @@ def measure(lamps, panorama, truth, empty, run):
     row = {
         "lamps": lamps,
         "method": method,
-        "lights": prepared.light_count,
+        "lights": prepared.at_depth.count,
         "denoised": denoise,
         "psnr_changed_db": round(metrics.psnr(picture, truth.with_objects, changed), 2),
         "psnr_unchanged_db": round(metrics.psnr(picture, empty, unchanged), 2),

@@ -122,6 +122,6 @@ def test_the_light_of_a_lamp_is_kept_when_it_becomes_a_light(fresh_blend, tmp_pa
     for most_lights in (0, None):
         prepared = preparation.prepare(scene, most_lights)
         found.append(blender_images.array_from_image(here.irradiance)[16:].mean(axis=(0, 1)))
-    assert prepared.light_count >= 1
+    assert prepared.at_depth.count >= 1
     assert found[0][0] > 1.2 * found[0][2]
     assert np.allclose(found[1], found[0], rtol=0.06)  # the plain map's own noise

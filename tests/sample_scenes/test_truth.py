@@ -29,7 +29,7 @@ def test_the_default_method_comes_near_the_truth(
     room.capture_panorama(lamps, panorama, 768, 8)
     truth = room.render_truth(lamps, WIDTH, HEIGHT, 96)
     scene, prepared = room.mixed_scene(panorama)
-    assert prepared.light_count >= 3
+    assert prepared.at_depth.count >= 3
 
     def picture(**settings):
         return room.render_mixed(scene, tmp_path / "picture.exr", Picture(WIDTH, HEIGHT, seed=1, **settings))

@@ -1,0 +1,191 @@
+"""The lamps of a map at infinity as discs: few sun lights that light as the lamps do, and a quiet map.
+
+A sun light is a disc of constant radiance. Each bright region becomes one for its core, with the region's
+vector irradiance and second moment, and one for the halo around it. Where that leaves a map so quiet that
+the renderer need not aim at it any more, all its aiming goes to the suns; elsewhere its own sampling of the
+map is as good or better, and the map is best left alone.
+
+Source: thesis, section 3.2 (hybrid scheme); the criterion was found by measurement.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import equirectangular
+from .light_map import check_light_map, luminance
+from .quiet import noise, quiet_map
+from .regions import connected_regions
+
+BRIGHT = 4.0
+"""A pixel is bright above this multiple of the map's mean luminance over the sphere."""
+LEAST_CORE, LEAST_HALO = 0.004, 0.002
+"""A lamp, or its halo, with less of the map's light stays in the quiet map."""
+ROUND = 0.3
+"""A region whose spread across is less than this share of that along is halved."""
+WIDEST = 0.35
+"""Radius of the widest disc [rad]: a wider core is halved, a wider halo stays in the quiet map."""
+QUIET = 0.1
+"""Noise of the residual up to which the renderer gains by the lights (`quiet.noise`)."""
+MOST = 32
+"""No map needs more; further lamps stay in the quiet map."""
+_PIXEL_SPREAD = 0.29
+"""Standard deviation of a pixel's own extent [px], 1/√12."""
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A disc of constant radiance at infinity, in the panorama frame."""
+
+    direction: np.ndarray
+    """(3,) unit vector to its middle."""
+    radius: float
+    """[rad]"""
+    irradiance: np.ndarray
+    """(3,) RGB on a plane that faces it: ∫ M ω·direction dω over its lamp's pixels."""
+    pixels: np.ndarray
+    """(n,) flat indices of the pixels whose light it carries."""
+
+
+@dataclass(frozen=True)
+class DiscSplit:
+    """The discs of a map, and what remains."""
+
+    discs: tuple[Disc, ...]
+    quiet: np.ndarray
+    """(h, w, 3) the residual, of low resolution."""
+    share: float
+    """The discs' share of the map's light, in [0, 1]."""
+    noise: float
+    """Of the quiet map."""
+
+    @property
+    def helps(self) -> bool:
+        """Whether a renderer is faster with the discs than with its own sampling of the map."""
+        return bool(self.discs) and self.noise <= QUIET
+
+
+def split_into_discs(image: np.ndarray, most: int = MOST) -> DiscSplit:
+    """Split a light map (H, W, 3) into at most ``most`` discs, the strongest, and a quiet map.
+
+    The discs' irradiance and the quiet map's together light a diffuse plane as the map does, wherever all of
+    a disc is above the plane's horizon. Raises ValueError for what `check_light_map` refuses.
+
+    >>> image = np.full((64, 128, 3), 0.01, np.float32)
+    >>> image[20:24, 40:48] = 100
+    >>> found = split_into_discs(image)
+    >>> len(found.discs), found.helps
+    (2, True)
+    """
+    sphere = _Sphere(check_light_map(image))
+    bright = sphere.luminance > BRIGHT * sphere.power.sum() / (4 * np.pi)
+    waiting = [r for r in connected_regions(bright.reshape(image.shape[:2])) if sphere.share(r) >= LEAST_CORE]
+    discs = []
+    while waiting:
+        waiting.sort(key=sphere.share)
+        region = waiting.pop()
+        parts = _halves(sphere, region)
+        if parts is None:
+            discs += _core_and_halo(sphere, region)
+        else:
+            waiting += [part for part in parts if sphere.share(part) >= LEAST_CORE]
+    discs = sorted(discs, key=lambda disc: -sphere.share(disc.pixels))[:most]
+    taken = np.zeros(sphere.power.shape, bool)
+    for disc in discs:
+        taken[disc.pixels] = True
+    quiet = quiet_map(image, taken.reshape(image.shape[:2]), behind_lamps=False)
+    share = float(sphere.power[taken].sum() / sphere.power.sum())
+    return DiscSplit(tuple(discs), quiet, share, noise(quiet, image))
+
+
+def disc_numbers(discs: tuple[Disc, ...], width: int, height: int) -> np.ndarray:
+    """Return which disc (H, W) int32 shows each pixel of the picture, −1 for none.
+
+    Of discs that overlap it is the one whose middle is nearer, in radii: so the discs show every pixel once.
+    One pixel beyond the rim belongs to a disc too, so that no look-up at a pixel's centre misses the rim.
+    """
+    directions = equirectangular.pixel_directions(width, height).reshape(-1, 3)
+    nearest = np.full(width * height, np.inf)
+    numbers = np.full(width * height, -1, np.int32)
+    for number, disc in enumerate(discs):
+        angles = np.arccos(np.clip(directions @ disc.direction.astype(np.float32), -1, 1))
+        distances = angles / disc.radius
+        nearer = (angles < disc.radius + np.pi / height) & (distances < nearest)
+        nearest[nearer], numbers[nearer] = distances[nearer], number
+    return numbers.reshape(height, width)
+
+
+class _Sphere:
+    """A map's pixels (n,) on the sphere: radiance, directions, solid angles, luminous power."""
+
+    def __init__(self, image):
+        self.height, width = image.shape[:2]
+        self.radiance = image.reshape(-1, 3)
+        self.directions = equirectangular.pixel_directions(width, self.height).reshape(-1, 3)
+        self.solid_angles = np.repeat(equirectangular.row_solid_angles(width, self.height), width)
+        self.luminance = luminance(image).ravel()
+        self.power = self.luminance * self.solid_angles
+        self._total = self.power.sum()
+
+    def share(self, pixels):
+        """Of the map's light that pixels hold."""
+        return self.power[pixels].sum() / self._total
+
+    def middle(self, pixels):
+        """Unit vector to the middle of the pixels' light."""
+        direction = self.power[pixels] @ self.directions[pixels]
+        return direction / np.linalg.norm(direction)
+
+    def pixel_variance(self):
+        """Mean square extent of one pixel along one axis [rad²]."""
+        return (_PIXEL_SPREAD * np.pi / self.height) ** 2
+
+    def disc(self, direction, radius, pixels):
+        """The disc with the light of these pixels."""
+        weights = self.solid_angles[pixels] * (self.directions[pixels] @ direction)
+        return Disc(direction, float(radius), weights @ self.radiance[pixels].astype(float), pixels)
+
+
+def _halves(sphere, region):
+    """A long or wide region cut across its longer axis, half of the light each; None for a round one."""
+    middle, weights = sphere.middle(region), sphere.power[region]
+    directions = sphere.directions[region].astype(float)
+    offsets = directions - np.outer(directions @ middle, middle)
+    variances, axes = np.linalg.eigh((offsets * weights[:, None]).T @ offsets / weights.sum())
+    across, along = np.sqrt(variances[1:] + sphere.pixel_variance())
+    if across >= ROUND * along and np.hypot(across, along) * np.sqrt(2) < WIDEST:
+        return None
+    positions = offsets @ axes[:, 2]
+    order = np.argsort(positions)
+    light = np.cumsum(weights[order])
+    first = positions <= positions[order[np.searchsorted(light, light[-1] / 2)]]
+    return None if first.all() else (region[first], region[~first])
+
+
+def _core_and_halo(sphere, region):
+    """The disc of a region's core, with its second moment, and that of what lies around it."""
+    middle, weights = sphere.middle(region), sphere.power[region]
+    directions = sphere.directions[region].astype(float)
+    radius = np.sqrt(
+        2 * (weights @ _squared_angles(directions, middle)) / weights.sum() + 4 * sphere.pixel_variance()
+    )
+    for _ in range(5):  # the middle of what the disc holds, not of the region
+        inside = _squared_angles(directions, middle) < radius**2
+        middle = sphere.middle(region[inside])
+    inside = _squared_angles(directions, middle) < radius**2
+    halo = region[~inside]
+    discs = [sphere.disc(middle, radius, region[inside])]
+    if sphere.share(halo) < LEAST_HALO:
+        return discs
+    middle = sphere.middle(halo)
+    reach = np.sqrt(_squared_angles(sphere.directions[halo].astype(float), middle).max())
+    if reach < WIDEST:
+        discs.append(sphere.disc(middle, reach + np.sqrt(4 * sphere.pixel_variance()), halo))
+    return discs
+
+
+def _squared_angles(directions, middle):
+    """Squared distances (n,) of unit vectors from one, which for small angles are their squared angles."""
+    return 2 * (1 - np.clip(directions @ middle, -1, 1))
