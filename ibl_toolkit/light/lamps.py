@@ -21,7 +21,7 @@ from .outline import outlines_of_part, solid_angle_of_outline
 from .quiet import noise, quiet_map
 from .regions import connected_regions
 
-BRIGHT = 3.0
+BRIGHT = 2.0
 """A pixel is bright above this multiple of the map's mean luminance over the sphere."""
 LEAST_SHARE = 0.0005
 """A flat part with less of the map's light stays in the quiet map, which spreads it."""
