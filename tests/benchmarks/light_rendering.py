@@ -1,0 +1,205 @@
+"""Error against time of the ways to light a scene by a map: plain, suns only, pre-sampled, hybrid.
+
+The eight maps that ship with Blender at infinity and three rebuilt rooms, each with a diffuse, a glossy and a
+mixed scene; the thesis's Table 3.1 and Fig. 3-5. Writes docs/charts/light_rendering.json,
+light_rendering.png and light_rendering_table.png. References are rendered once and kept in out/bench/light/;
+with --keep, so are pictures that a run which was cut short has left there.
+"""
+
+import json
+import os
+import pickle
+import sys
+
+import _light_cases as cases
+import _light_charts as charts
+import _light_errors as errors
+from _light_cases import DL, FORCED, HIB, MPA, PLAIN, Case
+from _light_references import half_samples, reference
+
+from expanded_panoramas import cycles_integration
+
+ROUNDS = 2
+COUNTS = (4, 16, 64)
+PLAIN_ROOM_COUNTS, HYBRID_ROOM_COUNTS = (16, 64, 256), (1, 4, 16, 64, 256)
+TABLE_CASE, TABLE_COUNTS, TABLE_WAYS = (
+    Case("studio", "mixed"),
+    (4, 8, 16, 32, 64, 128, 256),
+    (PLAIN, MPA, HIB),
+)
+
+
+def main():
+    """Measure all cases and write figures and charts."""
+    cases.CACHE.mkdir(parents=True, exist_ok=True)
+    rows = []
+    for case in cases.all_cases():
+        row = figures(case, kept(case.slug, lambda case=case: measure(case)))
+        rows.append(row)
+        print(json.dumps({key: row[key] for key in ("place", "kind", "ratios")}), file=sys.stderr, flush=True)
+    measured = kept("table", lambda: measure(TABLE_CASE, dict.fromkeys(TABLE_WAYS, TABLE_COUNTS)))
+    document = {
+        "caption": caption(),
+        "definitions": errors.DEFINITIONS,
+        "cores": os.cpu_count(),
+        "blender": cases.bpy.app.version_string,
+        "size": [cases.WIDTH, cases.HEIGHT],
+        "summary": summary(rows),
+        "table": table(figures(TABLE_CASE, measured)),
+        "rows": rows,
+    }
+    text = json.dumps(document, indent=1, ensure_ascii=False)
+    (charts.CHARTS / "light_rendering.json").write_text(text + "\n", encoding="utf-8")
+    charts.draw(document)
+    charts.draw_table(document["table"])
+    print(json.dumps(document["summary"], indent=1))
+
+
+def kept(name, measure_it):
+    """What was measured before, with --keep; else measured now, and kept."""
+    path = cases.CACHE / f"measured_{name}.pickle"
+    if "--keep" in sys.argv and path.exists():
+        return pickle.loads(path.read_bytes())
+    measured = measure_it()
+    path.write_bytes(pickle.dumps(measured))
+    return measured
+
+
+def measure(case, counts=None):
+    """Pictures and seconds of a case -> {way: (Lights, {samples: [(picture, seconds), …]})}.
+
+    In rounds, a way after the other, so that a busy minute of the machine is nobody's alone.
+    """
+    ways = counts or {way: counts_of(case, way) for way in case.ways}
+    found = {}
+    for number in range(ROUNDS):
+        for way in list(ways):
+            lit = cases.light(case, way)
+            if way == HIB and not lit.lights.count:
+                ways.setdefault(FORCED, COUNTS)
+            _, runs = found.setdefault(way, (lit.lights, {}))
+            for samples in ways[way]:
+                runs.setdefault(samples, []).append(lit.render(samples, 1 + number))
+    return found
+
+
+def counts_of(case, way):
+    """At how many samples a way is measured."""
+    if case.is_room:
+        return PLAIN_ROOM_COUNTS if way == PLAIN else HYBRID_ROOM_COUNTS
+    return COUNTS
+
+
+def figures(case, measured):
+    """A row of the document."""
+    halves = reference(case)
+    ways = {}
+    for way, (lights, runs) in measured.items():
+        taken = {"lights": lights.count, "share": errors.rounded(lights.share), "reason": lights.reason}
+        ways[way] = {**taken, **errors.curve(runs, halves)}
+    plain = ways[PLAIN]
+    return {
+        "place": case.place,
+        "kind": case.kind,
+        "reference_samples": 2 * half_samples(case),
+        "ratios": {way: errors.time_ratio(plain, ways[way]) for way in ways if way != PLAIN},
+        "flip_ratios": {way: errors.time_ratio(plain, ways[way], "flip") for way in ways if way != PLAIN},
+        "left_alone": is_left_alone(measured),
+        "ways": ways,
+    }
+
+
+def is_left_alone(measured):
+    """Whether the hybrid took no light out of the map, so that its pictures are the plain ones."""
+    plain, hybrid = (measured[way][1] for way in (PLAIN, HIB))
+    common = plain.keys() & hybrid.keys()
+    return all((p == h).all() for n in common for (p, _), (h, _) in zip(plain[n], hybrid[n], strict=True))
+
+
+def summary(rows):
+    """What was to be reached, by place and over all."""
+    by_place = {}
+    for row in rows:
+        by_place.setdefault(row["place"], []).append(row)
+    places = {name: place_summary(of_place) for name, of_place in by_place.items()}
+    rooms = [places[name] for name in cases.ROOMS]
+    maps = [places[name] for name in places if name not in cases.ROOMS]
+    return {
+        "rooms_time_ratio": errors.geometric_mean([place["time_ratio"] for place in rooms]),
+        "maps_time_ratio": errors.geometric_mean([place["time_ratio"] for place in maps]),
+        "least_map_time_ratio": min(place["time_ratio"] for place in maps),
+        "white_dots": sum(place["white_dots"] for place in places.values()),
+        "largest_bias_percent": max((place["bias_percent"] for place in places.values()), key=abs),
+        "places": places,
+    }
+
+
+def place_summary(rows):
+    """Of the hybrid in one place, over its kinds of scene."""
+    hybrids = [row["ways"][HIB] for row in rows]
+    forced = [row["ratios"][FORCED] for row in rows if FORCED in row["ratios"]]
+    count = len(hybrids)
+    return {
+        "lights": hybrids[0]["lights"],
+        "share": hybrids[0]["share"],
+        "reason": hybrids[0]["reason"],
+        "left_alone": all(row["left_alone"] for row in rows),
+        "time_ratio": errors.geometric_mean([row["ratios"][HIB] for row in rows]),
+        "flip_time_ratio": errors.geometric_mean([row["flip_ratios"][HIB] for row in rows]),
+        "forced_time_ratio": errors.geometric_mean(forced) if forced else None,
+        "cost_ratio": errors.geometric_mean(
+            [
+                row["ways"][PLAIN]["per_sample_seconds"] / row["ways"][HIB]["per_sample_seconds"]
+                for row in rows
+            ]
+        ),
+        "bias_percent": errors.rounded(sum(h["bias_percent"] for h in hybrids) / count),
+        "bias_standard_error": errors.rounded(
+            sum(h["bias_standard_error"] ** 2 for h in hybrids) ** 0.5 / count
+        ),
+        "white_dots": sum(h["white_dots"] for h in hybrids),
+        "white_dots_plain": sum(row["ways"][PLAIN]["white_dots"] for row in rows),
+    }
+
+
+def table(row):
+    """Table 3.1 for one map and scene: time as a share of the plain set-up's at its most samples."""
+    longest = row["ways"][PLAIN]["points"][-1]["seconds"]
+    lines = [
+        {
+            "way": "IS" if way == PLAIN else way,
+            "samples": point["samples"],
+            "time": errors.rounded(point["seconds"] / longest),
+            "mse": point["mse"],
+            "flip": point["flip"],
+            "lights": row["ways"][way]["lights"],
+            "share": row["ways"][way]["share"],
+        }
+        for way in TABLE_WAYS
+        for point in row["ways"][way]["points"]
+    ]
+    return {
+        "place": row["place"],
+        "kind": row["kind"],
+        "reference_samples": row["reference_samples"],
+        "pre_samples": cases.PRE_SAMPLES,
+        "ratios": row["ratios"],
+        "lines": lines,
+    }
+
+
+def caption():
+    """What was measured."""
+    return (
+        "Ways to light a scene. plain: the map as Cycles samples it, in rooms as the emission of the "
+        f"textured mesh. {DL}: {cases.DIRECTIONAL_LIGHTS} constant suns by variance cut, as wide as their "
+        f"regions. {MPA}: a pre-sampling map of {cases.PRE_SAMPLES} regions, {cases.PRE_WIDTH} pixels wide, "
+        f"lights; camera, glossy and transmission rays see the map. {HIB}: the default of this project. "
+        f"{FORCED}: {cases.MOST_LIGHTS[FORCED]} lights or fewer where the default leaves a map alone. Rooms: "
+        "method single, supports made grey, so that no bake enters. References: the plain set-up"
+    )
+
+
+if __name__ == "__main__":
+    cycles_integration.register()
+    main()
