@@ -172,6 +172,7 @@ def _render(scene, camera, picture, paths, options, progress):
         "lights": lights.count,
         "light_share": lights.share,
         "light_reason": lights.reason,
+        "warnings": list(report.warnings),
         "frames": _frames(paths, missing),
     }
 

@@ -38,6 +38,7 @@ def set_up(scene: bpy.types.Scene, place: Place, method: str, plate: bpy.types.I
     if method not in (CATCHER, SINGLE, DIFFERENCE, DIRECTIONAL):
         raise ValueError(f"method is {method!r}; expected catcher, single, difference or directional")
     view_layers.remove_ours(scene)
+    view_layers.show_suns(scene, place, method == DIRECTIONAL)
     world.build_world(scene, place, whole_map_lights=method == DIRECTIONAL)
     view_layers.add_objects(
         scene, place, as_catchers=method in (CATCHER, DIRECTIONAL), with_environment=method != DIRECTIONAL

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
+from ..ibl_toolkit.light.extraction_warnings import warnings_of_map
 from ..ibl_toolkit.light.lamps import split_into_lamps
-from . import blender_images, lamps, lookup, maps, materials, suns, world
+from . import blender_images, lamps, lookup, maps, materials, suns, view_layers, world
 from .place import Place, place_of, sort_objects
 
 LIGHTS_WIDTH = 2048
@@ -36,6 +37,8 @@ class Preparation:
     """Lamps on the surfaces."""
     at_infinity: Lights = field(default_factory=Lights)
     """Suns, for the method that lights from infinity alone."""
+    warnings: tuple[str, ...] = ()
+    """What is suspicious in the map's light, one sentence each."""
 
 
 def prepare(scene: bpy.types.Scene, most_lights: int | None = None) -> Preparation:
@@ -53,18 +56,20 @@ def prepare(scene: bpy.types.Scene, most_lights: int | None = None) -> Preparati
     lookup.build_lookup(place)
     materials.assign(scene, place)
     world.build_world(scene, place)
+    view_layers.show_suns(scene, place, False)
     _timed(report, "irradiance", lambda: _measure_light(scene, place))
     lookup.build_lookup(place)
     return report
 
 
 def prepare_suns(scene: bpy.types.Scene, place: Place, most_lights: int | None = None) -> Lights:
-    """Make the suns of the whole map at infinity and a World that lights with what they leave of it.
+    """Light the scene from infinity: suns of the whole map, and a World of what they leave of it.
 
     ``most_lights`` as in `prepare`. A place without surfaces will do.
     """
     split = suns.replace_suns(place, _light_map(place, _lights_width(place)), most_lights)
     world.build_world(scene, place, whole_map_lights=True)
+    view_layers.show_suns(scene, place, True)
     return Lights(len(split.discs), split.share, _reason_for_suns(split, most_lights))
 
 
@@ -81,6 +86,7 @@ def _split_lights(scene, place: Place, depth: maps.DepthMap, most_lights: int | 
     place.sky = blender_images.replace_image(place.sky, "Panorama Sky", sky)
     report.at_depth = Lights(len(split.lamps), split.share, _reason_for_lamps(split, most_lights))
     report.at_infinity = prepare_suns(scene, place, most_lights)
+    report.warnings = warnings_of_map(image)
 
 
 def _light_map(place, width):

@@ -51,6 +51,13 @@ def add_mask(scene, place) -> bpy.types.ViewLayer:
     return layer
 
 
+def show_suns(scene, place, shown: bool):
+    """Let the suns light the artist's own view layers, or not: beside the surfaces they would light twice."""
+    for layer in scene.view_layers:
+        if layer.name not in OURS:
+            layer_collection(layer, place.suns).exclude = not shown
+
+
 def remove_ours(scene):
     """Remove the layers of any method; the artist's own layer is for the viewport and renders no more."""
     for layer in list(scene.view_layers):

@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import calibration, light, picking, pictures, probes, properties, set_files, surfaces
+from . import calibration, clipped_light, light, picking, pictures, probes, properties, set_files, surfaces
 
-OPERATORS = (set_files, picking, calibration, probes, surfaces, light, pictures)
+OPERATORS = (set_files, picking, calibration, probes, surfaces, light, clipped_light, pictures)
 
 
 def register():

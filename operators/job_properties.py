@@ -59,4 +59,5 @@ class PanoramaJob(bpy.types.PropertyGroup):
     seconds: FloatProperty()
     coverage: FloatProperty()
     lights_at_depth: StringProperty()
+    light_warnings: StringProperty()
     lights_at_infinity: StringProperty()

@@ -6,7 +6,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..cycles_integration import blender_images, maps
 from ..cycles_integration.place import place_of, sort_objects
-from ..cycles_integration.preparation import prepare
+from ..cycles_integration.preparation import prepare, prepare_suns
 from ..ibl_toolkit.images import RGBD, write_rgbd
 from . import progress
 from .reporting import Reporting, possible
@@ -27,13 +27,38 @@ class PANORAMA_OT_prepare(Reporting, bpy.types.Operator):
         """Prepare, and keep what it spent and found."""
         state = context.scene.panorama_set
         job = state.job
-        most = {"AUTO": None, "NONE": 0, "LIMIT": job.most_lights}[job.lights]
-        spent = prepare(context.scene, most)
+        spent = prepare(context.scene, most_lights(job))
         job.seconds, job.coverage = sum(spent.seconds.values()), spent.coverage
+        job.light_warnings = "\n".join(spent.warnings)
         job.lights_at_depth, job.lights_at_infinity = spent.at_depth.reason, spent.at_infinity.reason
         state.maps_are_old = False
         found = f"{spent.at_depth.reason}, {100 * spent.coverage:.0f} % with depth"
         return f"{found}, {job.seconds:.1f} s"
+
+
+class PANORAMA_OT_light_from_infinity(Reporting, bpy.types.Operator):
+    """Light the scene by the panorama as an ordinary light map: suns for its lamps where that lessens the
+    noise, the rest in the World. Needs no surfaces"""
+
+    bl_idname = "panorama.light_from_infinity"
+    bl_label = "Light from Infinity"
+
+    @classmethod
+    def poll(cls, context):
+        """There must be a calibrated panorama."""
+        return possible(cls, progress.calibration_missing(context.scene))
+
+    def work(self, context):
+        """Make suns and World."""
+        job = context.scene.panorama_set.job
+        found = prepare_suns(context.scene, place_of(context.scene), most_lights(job))
+        job.lights_at_infinity = found.reason
+        return found.reason
+
+
+def most_lights(job):
+    """The most lights that are to be taken out of the map; None lets the map decide."""
+    return {"AUTO": None, "NONE": 0, "LIMIT": job.most_lights}[job.lights]
 
 
 class PANORAMA_OT_export_depth(Reporting, ExportHelper, bpy.types.Operator):
@@ -71,4 +96,4 @@ class PANORAMA_OT_export_depth(Reporting, ExportHelper, bpy.types.Operator):
         return f"Wrote {self.filepath}: {width} × {width // 2}, {100 * depth.coverage:.0f} % with depth"
 
 
-classes = (PANORAMA_OT_prepare, PANORAMA_OT_export_depth)
+classes = (PANORAMA_OT_prepare, PANORAMA_OT_light_from_infinity, PANORAMA_OT_export_depth)

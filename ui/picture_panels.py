@@ -82,8 +82,13 @@ class PANORAMA_PT_light(Step, bpy.types.Panel):
                 self.say(context, "The place has changed: prepare again", "FILE_REFRESH")
             box = layout.box().column(align=True)
             paragraph(box, context, f"Lights: {progress.lights_found(scene)}")
+            for warning in job.light_warnings.splitlines():
+                self.say(context, warning, "ERROR")
             figure(box, "With depth", f"{100 * job.coverage:.0f} % of the sphere")
             figure(box, "Took", f"{job.seconds:.1f} s")
+            if job.light_warnings:
+                layout.operator("panorama.restore_light", text="Restore Clipped Light...", icon="LIGHT_SUN")
+        layout.operator("panorama.light_from_infinity", icon="LIGHT_SUN")
         layout.operator("panorama.export_depth", text="Write RGB-D...", icon="EXPORT")
 
 

@@ -7,11 +7,11 @@ artist knows: the light's irradiance, or how much brighter the ground is in it t
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from .. import equirectangular
 from .light_map import LUMINANCE, check_light_map, irradiance, strips
+from .regions import connected_regions
 
 PLATEAU = 1e-3
 """Pixels within this part of the highest value count as equal to it: the rounding of half floats."""
@@ -174,24 +174,11 @@ def _refuse_unclipped(clipping):
 
 
 def _largest_part(plateau, solid_angles):
-    """Mask of the connected part (8 neighbours, across the seam too) with the largest solid angle."""
-    rows = np.flatnonzero(plateau.any(axis=1))
-    rows = slice(rows[0], rows[-1] + 1)
-    count, labels = cv2.connectedComponents(plateau[rows].astype(np.uint8), connectivity=8)
-    joined = np.arange(count)
-    left, right = labels[:, 0], labels[:, -1]
-    for step in (-1, 0, 1):
-        beside = right[max(step, 0) : len(right) + min(step, 0)]
-        here = left[max(-step, 0) : len(left) + min(-step, 0)]
-        for one, other in {*zip(here.tolist(), beside.tolist(), strict=True)}:
-            if one and other:
-                joined[joined == joined[other]] = joined[one]
-    areas = np.zeros(count)
-    for row, solid_angle in zip(labels, solid_angles[rows], strict=True):
-        areas += np.bincount(joined[row], minlength=count) * solid_angle
-    areas[0] = 0
+    """Mask of the connected part with the largest solid angle."""
+    width = plateau.shape[1]
+    largest = max(connected_regions(plateau), key=lambda pixels: solid_angles[pixels // width].sum())
     mask = np.zeros_like(plateau)
-    mask[rows] = joined[labels] == areas.argmax()
+    mask.ravel()[largest] = True
     return mask
 
 

@@ -23,10 +23,15 @@ def warnings_of(image, samples, positions=None):
     >>> print(*warnings_of(image, samples_from_sites(image, [[0, 0, 1], [0, 0, -1]])))
     2 of 2 lights stand for a region wider than 30° around its middle: take more, or a smaller threshold
     """
-    found = [_of_clipping(image), _of_hot_pixel(image), _of_wide_regions(samples)]
+    found = [_of_wide_regions(samples)]
     if positions is not None:
         found.append(_of_missing_depth(positions))
-    return tuple(text for text in found if text)
+    return warnings_of_map(image) + tuple(text for text in found if text)
+
+
+def warnings_of_map(image):
+    """What is suspicious in a map (H, W, 3) itself, a tuple of sentences: a clipped lamp, a hot pixel."""
+    return tuple(text for text in (_of_clipping(image), _of_hot_pixel(image)) if text)
 
 
 def _of_clipping(image):
