@@ -6,8 +6,8 @@ import sys
 import _light_cases as cases
 import numpy as np
 
-HALF_SAMPLES = {"room, large lamps": 1024, "room, small lamps": 1024, "hotel room": 2048, "studio": 512}
-MAP_HALF_SAMPLES = 256
+HALF_SAMPLES = {"room, large lamps": 1024, "room, small lamps": 1024, "hotel room": 1536, "studio": 512}
+MAP_HALF_SAMPLES = 128
 SEEDS = 101, 202
 
 

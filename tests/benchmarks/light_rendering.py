@@ -14,17 +14,18 @@ import sys
 import _light_cases as cases
 import _light_charts as charts
 import _light_errors as errors
+import numpy as np
 from _light_cases import DL, FORCED, HIB, MPA, PLAIN, Case
 from _light_references import half_samples, reference
 
 from expanded_panoramas import cycles_integration
 
 ROUNDS = 2
-COUNTS = (4, 16, 64)
-PLAIN_ROOM_COUNTS, HYBRID_ROOM_COUNTS = (16, 64, 256), (1, 4, 16, 64, 256)
+COUNTS, SUNS_COUNTS = (4, 64), (4, 16)
+PLAIN_ROOM_COUNTS, HYBRID_ROOM_COUNTS = (16, 64, 256), (1, 4, 16, 64)
 TABLE_CASE, TABLE_COUNTS, TABLE_WAYS = (
     Case("studio", "mixed"),
-    (4, 8, 16, 32, 64, 128, 256),
+    (4, 16, 64, 256),
     (PLAIN, MPA, HIB),
 )
 
@@ -32,12 +33,9 @@ TABLE_CASE, TABLE_COUNTS, TABLE_WAYS = (
 def main():
     """Measure all cases and write figures and charts."""
     cases.CACHE.mkdir(parents=True, exist_ok=True)
-    rows = []
-    for case in cases.all_cases():
-        row = figures(case, kept(case.slug, lambda case=case: measure(case)))
-        rows.append(row)
-        print(json.dumps({key: row[key] for key in ("place", "kind", "ratios")}), file=sys.stderr, flush=True)
-    measured = kept("table", lambda: measure(TABLE_CASE, dict.fromkeys(TABLE_WAYS, TABLE_COUNTS)))
+    measured = {case: kept(case.slug, lambda case=case: measure(case)) for case in cases.all_cases()}
+    of_table = kept("table", lambda: measure(TABLE_CASE, dict.fromkeys(TABLE_WAYS, TABLE_COUNTS)))
+    rows = [figures(case, found) for case, found in measured.items()]
     document = {
         "caption": caption(),
         "definitions": errors.DEFINITIONS,
@@ -45,7 +43,7 @@ def main():
         "blender": cases.bpy.app.version_string,
         "size": [cases.WIDTH, cases.HEIGHT],
         "summary": summary(rows),
-        "table": table(figures(TABLE_CASE, measured)),
+        "table": table(figures(TABLE_CASE, of_table)),
         "rows": rows,
     }
     text = json.dumps(document, indent=1, ensure_ascii=False)
@@ -62,6 +60,7 @@ def kept(name, measure_it):
         return pickle.loads(path.read_bytes())
     measured = measure_it()
     path.write_bytes(pickle.dumps(measured))
+    print(f"light_rendering: measured {name}", file=sys.stderr, flush=True)
     return measured
 
 
@@ -71,12 +70,13 @@ def measure(case, counts=None):
     In rounds, a way after the other, so that a busy minute of the machine is nobody's alone.
     """
     ways = counts or {way: counts_of(case, way) for way in case.ways}
-    found = {}
+    found, order = {}, list(ways)
     for number in range(ROUNDS):
-        for way in list(ways):
+        for way in order:
             lit = cases.light(case, way)
-            if way == HIB and not lit.lights.count:
-                ways.setdefault(FORCED, COUNTS)
+            if way == HIB and not lit.lights.count and FORCED not in ways:
+                ways[FORCED] = COUNTS
+                order.append(FORCED)
             _, runs = found.setdefault(way, (lit.lights, {}))
             for samples in ways[way]:
                 runs.setdefault(samples, []).append(lit.render(samples, 1 + number))
@@ -87,7 +87,7 @@ def counts_of(case, way):
     """At how many samples a way is measured."""
     if case.is_room:
         return PLAIN_ROOM_COUNTS if way == PLAIN else HYBRID_ROOM_COUNTS
-    return COUNTS
+    return SUNS_COUNTS if way == DL else COUNTS
 
 
 def figures(case, measured):
@@ -110,10 +110,14 @@ def figures(case, measured):
 
 
 def is_left_alone(measured):
-    """Whether the hybrid took no light out of the map, so that its pictures are the plain ones."""
-    plain, hybrid = (measured[way][1] for way in (PLAIN, HIB))
-    common = plain.keys() & hybrid.keys()
-    return all((p == h).all() for n in common for (p, _), (h, _) in zip(plain[n], hybrid[n], strict=True))
+    """Whether the hybrid took no light out of the map. Then its pictures must be the plain ones."""
+    (_, plain), (lights, hybrid) = measured[PLAIN], measured[HIB]
+    if lights.count:
+        return False
+    for samples in plain.keys() & hybrid.keys():
+        for (p, _), (h, _) in zip(plain[samples], hybrid[samples], strict=True):
+            np.testing.assert_allclose(h, p, rtol=1e-2, atol=1e-3)  # sums of samples in another order
+    return True
 
 
 def summary(rows):
@@ -122,12 +126,13 @@ def summary(rows):
     for row in rows:
         by_place.setdefault(row["place"], []).append(row)
     places = {name: place_summary(of_place) for name, of_place in by_place.items()}
+    taken = [row["ratios"][HIB] for row in rows if row["place"] not in cases.ROOMS and not row["left_alone"]]
     rooms = [places[name] for name in cases.ROOMS]
     maps = [places[name] for name in places if name not in cases.ROOMS]
     return {
         "rooms_time_ratio": errors.geometric_mean([place["time_ratio"] for place in rooms]),
         "maps_time_ratio": errors.geometric_mean([place["time_ratio"] for place in maps]),
-        "least_map_time_ratio": min(place["time_ratio"] for place in maps),
+        "least_map_time_ratio": min([1.0, *taken]),
         "white_dots": sum(place["white_dots"] for place in places.values()),
         "largest_bias_percent": max((place["bias_percent"] for place in places.values()), key=abs),
         "places": places,
@@ -135,16 +140,21 @@ def summary(rows):
 
 
 def place_summary(rows):
-    """Of the hybrid in one place, over its kinds of scene."""
+    """Of the hybrid in one place, over its kinds of scene.
+
+    Where it leaves a map alone, its time is the plain one's, and what was measured tells the clock's noise.
+    """
     hybrids = [row["ways"][HIB] for row in rows]
     forced = [row["ratios"][FORCED] for row in rows if FORCED in row["ratios"]]
-    count = len(hybrids)
+    count, left_alone = len(hybrids), all(row["left_alone"] for row in rows)
+    measured = errors.geometric_mean([row["ratios"][HIB] for row in rows])
     return {
         "lights": hybrids[0]["lights"],
         "share": hybrids[0]["share"],
         "reason": hybrids[0]["reason"],
-        "left_alone": all(row["left_alone"] for row in rows),
-        "time_ratio": errors.geometric_mean([row["ratios"][HIB] for row in rows]),
+        "left_alone": left_alone,
+        "time_ratio": 1.0 if left_alone else measured,
+        "measured_time_ratio": measured,
         "flip_time_ratio": errors.geometric_mean([row["flip_ratios"][HIB] for row in rows]),
         "forced_time_ratio": errors.geometric_mean(forced) if forced else None,
         "cost_ratio": errors.geometric_mean(
