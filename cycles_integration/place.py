@@ -35,7 +35,7 @@ class Place(bpy.types.PropertyGroup):
     irradiance: bpy.props.PointerProperty(type=bpy.types.Image)
     gloss: bpy.props.PointerProperty(type=bpy.types.Image)
     sky: bpy.props.PointerProperty(type=bpy.types.Image)
-    sun_numbers: bpy.props.PointerProperty(type=bpy.types.Image)
+    sun_residual: bpy.props.PointerProperty(type=bpy.types.Image)
     sun_quiet: bpy.props.PointerProperty(type=bpy.types.Image)
     plate: bpy.props.PointerProperty(type=bpy.types.Image)
 

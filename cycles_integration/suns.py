@@ -1,8 +1,8 @@
 """The lamps of a map at infinity as sun lights, and what is left of the map in the World.
 
-For the method that lights from infinity alone. Each sun is of one radiance to diffuse light and where Cycles
-aims at it; a mirror or glass ray that meets it sees the photograph there, and the photograph around it in the
-World. The rest of the map lights diffuse surfaces in low resolution, and Cycles need not aim at it.
+For the method that lights from infinity alone. The suns are plain discs of one radiance; a light's shader
+cannot tell what kind of ray meets it, so the World shows reflected rays what the suns do not. The rest of the
+map lights diffuse surfaces in low resolution, and Cycles need not aim at it.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from ..ibl_toolkit.light.discs import Disc, DiscSplit, disc_numbers, split_into_discs
-from . import blender_images, lookup
-from .node_trees import add, maths, vector_maths
+from ..ibl_toolkit.light.discs import Disc, DiscSplit, split_into_discs
+from . import blender_images
+from .node_trees import maths, vector_maths
 from .place import Place, own_name
 
 
@@ -28,58 +28,36 @@ def replace_suns(place: Place, image: np.ndarray, most: int | None = None) -> Di
     split = split_into_discs(image) if most is None else split_into_discs(image, most)
     if most is None and not split.helps:
         split = split_into_discs(image, 0)
-    numbers = quiet = None
-    if split.discs:
-        found = disc_numbers(split.discs, *image.shape[1::-1]).astype(np.float32)
-        numbers, quiet = np.repeat(found[..., None], 3, axis=2), split.quiet
-    place.sun_numbers = blender_images.replace_image(place.sun_numbers, "Panorama Sun Numbers", numbers)
-    place.sun_quiet = blender_images.replace_image(place.sun_quiet, "Panorama Sun Residual", quiet)
+    residual, quiet = (split.residual, split.quiet) if split.discs else (None, None)
+    place.sun_residual = blender_images.replace_image(place.sun_residual, "Panorama Sun Residual", residual)
+    place.sun_quiet = blender_images.replace_image(place.sun_quiet, "Panorama Sun Quiet", quiet)
     for number, disc in enumerate(split.discs):
         _sun(place, number, disc)
     return split
 
 
-def number_at(place: Place, tree: bpy.types.NodeTree, direction: bpy.types.NodeSocket):
-    """Which sun shows the picture in a direction of the panorama frame; −1 for none."""
-    node = add(
-        tree,
-        "ShaderNodeTexEnvironment",
-        {"Vector": direction},
-        image=place.sun_numbers,
-        interpolation="Closest",
-    )
-    return node.outputs["Color"]
+def radiance_of_suns(place: Place, tree: bpy.types.NodeTree, direction: bpy.types.NodeSocket):
+    """The radiance of all suns that lie in a direction of the panorama frame."""
+    total = (0, 0, 0)
+    for sun in place.suns.objects:
+        middle = sun.rotation_quaternion.to_matrix().col[2]
+        radius = sun.data.angle / 2
+        radiance = np.array(sun.data.color) * sun.data.energy / (np.pi * np.sin(radius) ** 2)
+        cosine = vector_maths(tree, "DOT_PRODUCT", direction, tuple(middle))
+        is_inside = maths(tree, "GREATER_THAN", cosine, float(np.cos(radius)))
+        disc = vector_maths(tree, "MULTIPLY", tuple(radiance.tolist()), is_inside)
+        total = vector_maths(tree, "ADD", total, disc)
+    return total
 
 
 def _sun(place, number, disc: Disc):
-    name = own_name(place, f"Panorama Sun {number}")
-    data = bpy.data.lights.new(name, "SUN")
+    data = bpy.data.lights.new(own_name(place, f"Panorama Sun {number}"), "SUN")
     strongest = float(disc.irradiance.max())
     data.energy, data.angle = strongest, 2 * disc.radius
     data.color = (disc.irradiance / strongest).tolist()
-    _shader(place, data, number, disc)
-    sun = bpy.data.objects.new(name, data)
+    sun = bpy.data.objects.new(data.name, data)
     sun.visible_camera = False
     sun.parent = place.origin
     sun.rotation_mode = "QUATERNION"
     sun.rotation_quaternion = Vector(disc.direction.tolist()).to_track_quat("Z", "Y")  # shines along −z
     place.suns.objects.link(sun)
-
-
-def _shader(place, data, number, disc):
-    """Strength 1 stands for the sun's own colour and energy, whose radiance is E/(π sin²r)."""
-    data.use_nodes = True
-    tree = data.node_tree
-    tree.nodes.clear()
-    incoming = add(tree, "ShaderNodeNewGeometry").outputs["Incoming"]
-    towards = vector_maths(tree, "MULTIPLY", incoming, (-1, -1, -1))
-    direction = lookup.in_panorama_frame(tree, place.origin, towards)
-    photograph = lookup.environment_texture(tree, place.image, direction)
-    is_mine = maths(tree, "COMPARE", number_at(place, tree, direction), float(number), 0.5)
-    per_radiance = np.pi * np.sin(disc.radius) ** 2 / np.maximum(disc.irradiance, 1e-12)
-    seen = vector_maths(tree, "MULTIPLY", photograph, tuple(per_radiance.tolist()))
-    seen = vector_maths(tree, "MULTIPLY", seen, is_mine)
-    light = add(tree, "ShaderNodeEmission", {"Color": (1, 1, 1), "Strength": 1.0}).outputs[0]
-    seen = add(tree, "ShaderNodeEmission", {"Color": seen, "Strength": 1.0}).outputs[0]
-    surface = add(tree, "ShaderNodeMixShader", {0: lookup.is_looked_at(tree), 1: light, 2: seen}).outputs[0]
-    add(tree, "ShaderNodeOutputLight", {"Surface": surface})

@@ -5,11 +5,14 @@ from __future__ import annotations
 import bpy
 
 from .lookup import environment_texture, in_panorama_frame, is_looked_at
-from .node_trees import add, maths, mix_vectors, vector_maths
+from .node_trees import add, mix_vectors, vector_maths
 from .place import Place, own_name
-from .suns import number_at
+from .suns import radiance_of_suns
 
 NAME = "Panorama World"
+FINER, MOST_SAMPLED = 2, 4096
+"""Cycles aims at the map by a copy so many times as wide, since it blends pixels; a wider one, as Cycles
+would choose, costs seconds each time."""
 
 
 def build_world(scene: bpy.types.Scene, place: Place, *, whole_map_lights: bool = False) -> bpy.types.World:
@@ -25,26 +28,38 @@ def build_world(scene: bpy.types.Scene, place: Place, *, whole_map_lights: bool 
     tree = world.node_tree
     tree.nodes.clear()
     direction = in_panorama_frame(tree, place.origin, add(tree, "ShaderNodeTexCoord").outputs["Generated"])
-    colour = photograph = environment_texture(tree, place.image, direction)
-    is_aimed_at = True
-    if whole_map_lights and place.sun_numbers:
-        quiet = environment_texture(tree, place.sun_quiet, direction)
-        seen = _between_suns(tree, place, direction, photograph)
-        colour = mix_vectors(tree, is_looked_at(tree), quiet, seen)
-        is_aimed_at = False
-    elif not whole_map_lights:
-        sky = environment_texture(tree, place.sky, direction) if place.sky else (0, 0, 0)
-        colour = mix_vectors(tree, is_looked_at(tree), sky, photograph)
-        is_aimed_at = place.sky is not None
-    background = add(tree, "ShaderNodeBackground", {"Color": colour})
-    add(tree, "ShaderNodeOutputWorld", {"Surface": background.outputs[0]})
-    world.cycles.sampling_method = "AUTOMATIC" if is_aimed_at else "NONE"
+    seen = environment_texture(tree, place.image, direction)
+    if not whole_map_lights:
+        light = environment_texture(tree, place.sky, direction) if place.sky else (0, 0, 0)
+    elif place.sun_quiet:
+        light = environment_texture(tree, place.sun_quiet, direction)
+        seen = _beside_suns(tree, place, direction, seen)
+    else:
+        light = seen
+    surface = _background(tree, light)
+    if light != seen:
+        surfaces = {0: is_looked_at(tree), 1: surface, 2: _background(tree, seen)}
+        surface = add(tree, "ShaderNodeMixShader", surfaces).outputs[0]
+    add(tree, "ShaderNodeOutputWorld", {"Surface": surface})
+    is_aimed_at = not place.sun_quiet if whole_map_lights else place.sky
+    world.cycles.sampling_method = "MANUAL" if is_aimed_at else "NONE"
+    world.cycles.sample_map_resolution = min(FINER * place.image.size[0], MOST_SAMPLED)
     scene.world = world
     return world
 
 
-def _between_suns(tree, place, direction, photograph):
-    """The photograph; black to mirror and glass rays where a sun shows it to them."""
-    is_free = maths(tree, "LESS_THAN", number_at(place, tree, direction), -0.5)
-    camera = add(tree, "ShaderNodeLightPath").outputs["Is Camera Ray"]
-    return vector_maths(tree, "MULTIPLY", photograph, maths(tree, "MAXIMUM", camera, is_free))
+def _background(tree, colour):
+    return add(tree, "ShaderNodeBackground", {"Color": colour}).outputs[0]
+
+
+def _beside_suns(tree, place, direction, photograph):
+    """The photograph; to reflected and refracted rays, which meet the suns as well, without what these show.
+
+    A perfectly sharp reflection gets the difference, which is negative here and there: with the sun it makes
+    the photograph. To a blurred one that would be noise; it sees the lamps as the suns' discs.
+    """
+    sharp = vector_maths(tree, "SUBTRACT", photograph, radiance_of_suns(place, tree, direction))
+    blurred = environment_texture(tree, place.sun_residual, direction)
+    rays = add(tree, "ShaderNodeLightPath").outputs
+    reflected = mix_vectors(tree, rays["Is Singular Ray"], blurred, sharp)
+    return mix_vectors(tree, rays["Is Camera Ray"], reflected, photograph)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from .clustering import clusterings
+from .discs import QUIET
+from .quiet import noise, quiet_map
 
-LEAST_SHARE = 0.5
-"""A bright part at infinity with less of the map's light stays in the map, which the renderer samples."""
-LEAST_SHARE_AT_DEPTH = 0.05
-"""The same for a map with depth, whose emissive mesh the renderer samples by area, not by what it shows."""
+LEAST_SHARE = 0.05
+"""A bright part at depth with less of the map's light stays in the map."""
 LEAST_CONCENTRATION = 8.0
 """The bright part is this many times as bright as the mean of the sphere, or it does not stand out."""
 MOST_LIGHTS = 32
@@ -19,10 +19,17 @@ WIDEST = np.radians(15)
 """Radius up to which a disc is one light without error [rad]."""
 
 
-def is_worth_it(bright, at_depth):
-    """Whether the bright part of a map, a `Split`, is to become lights."""
-    least = LEAST_SHARE_AT_DEPTH if at_depth else LEAST_SHARE
-    return bright.share >= least and _stands_out(bright)
+def is_worth_it(image, bright, at_depth):
+    """Whether the bright part of a map (H, W, 3), a `Split`, is to become lights.
+
+    A lamp at depth is worth a light of its own: a renderer samples an emissive mesh by area, not by what it
+    shows. A map at infinity it samples by what it shows already, and gains only where the lights leave a map
+    so quiet that it need not be sampled at all.
+    """
+    if at_depth:
+        return bright.share >= LEAST_SHARE and _stands_out(bright)
+    residual = quiet_map(image, bright.mask, behind_lamps=False)
+    return _stands_out(bright) and noise(residual, image) <= QUIET
 
 
 def _stands_out(bright):
@@ -76,7 +83,7 @@ def reason(bright, count, asked=None):
     if asked == 0:
         return f"{found}: no lights, as asked"
     if not count and _stands_out(bright):
-        return f"{found}, too little for lights to help: left alone"
+        return f"{found}, and the rest is not quiet: left alone"
     if not count:
         return f"no part of this map stands out ({found}): left alone"
     lights = f"{count} light{'s' if count > 1 else ''}"

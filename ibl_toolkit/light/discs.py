@@ -54,6 +54,8 @@ class DiscSplit:
     """The discs of a map, and what remains."""
 
     discs: tuple[Disc, ...]
+    residual: np.ndarray
+    """(H, W, 3) the map, black where the discs' pixels are."""
     quiet: np.ndarray
     """(h, w, 3) the residual, of low resolution."""
     share: float
@@ -95,26 +97,11 @@ def split_into_discs(image: np.ndarray, most: int = MOST) -> DiscSplit:
     taken = np.zeros(sphere.power.shape, bool)
     for disc in discs:
         taken[disc.pixels] = True
-    quiet = quiet_map(image, taken.reshape(image.shape[:2]), behind_lamps=False)
+    lamps = taken.reshape(image.shape[:2])
+    residual = np.where(lamps[..., None], 0, image)
+    quiet = quiet_map(image, lamps, behind_lamps=False)
     share = float(sphere.power[taken].sum() / sphere.power.sum())
-    return DiscSplit(tuple(discs), quiet, share, noise(quiet, image))
-
-
-def disc_numbers(discs: tuple[Disc, ...], width: int, height: int) -> np.ndarray:
-    """Return which disc (H, W) int32 shows each pixel of the picture, −1 for none.
-
-    Of discs that overlap it is the one whose middle is nearer, in radii: so the discs show every pixel once.
-    One pixel beyond the rim belongs to a disc too, so that no look-up at a pixel's centre misses the rim.
-    """
-    directions = equirectangular.pixel_directions(width, height).reshape(-1, 3)
-    nearest = np.full(width * height, np.inf)
-    numbers = np.full(width * height, -1, np.int32)
-    for number, disc in enumerate(discs):
-        angles = np.arccos(np.clip(directions @ disc.direction.astype(np.float32), -1, 1))
-        distances = angles / disc.radius
-        nearer = (angles < disc.radius + np.pi / height) & (distances < nearest)
-        nearest[nearer], numbers[nearer] = distances[nearer], number
-    return numbers.reshape(height, width)
+    return DiscSplit(tuple(discs), residual, quiet, share, noise(quiet, image))
 
 
 class _Sphere:

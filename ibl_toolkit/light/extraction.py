@@ -103,7 +103,7 @@ def _bright_lights(image, count, threshold, depth):
     is_known = np.isfinite(depth[bright.mask]) if depth is not None else np.zeros(1, bool)
     at_depth = 2 * np.count_nonzero(is_known) > is_known.size
     by_hand = count is not None or threshold is not None
-    if count == 0 or not bright.share or not (by_hand or choice.is_worth_it(bright, at_depth)):
+    if count == 0 or not bright.share or not (by_hand or choice.is_worth_it(image, bright, at_depth)):
         return _none(bright.mask.shape), bright.share, choice.reason(bright, 0, count)
     many = _bright_samples(image, bright.mask)
     directions = next(clusterings(many, count))[1] if count else choice.fewest_lights(many)

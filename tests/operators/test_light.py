@@ -31,7 +31,7 @@ def test_light_from_infinity_needs_no_surfaces(fresh_blend, lit_place):
     scene.panorama_set.job.lights = "NONE"
     fresh_blend.ops.panorama.light_from_infinity()
     assert not here.suns.objects
-    assert scene.world.cycles.sampling_method == "AUTOMATIC"
+    assert scene.world.cycles.sampling_method == "MANUAL"
 
 
 def test_the_artist_sees_the_suns_only_where_they_light(fresh_blend, lit_place):
