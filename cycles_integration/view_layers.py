@@ -30,6 +30,7 @@ def add_objects(scene, place, *, as_catchers: bool, with_environment: bool) -> b
 def add_backplate(scene, place) -> bpy.types.ViewLayer:
     """The photograph projected on the real surfaces, as the camera sees it, and what lies at infinity."""
     layer = _real_only(scene, place, BACKPLATE)
+    layer_collection(layer, place.lights).exclude = True  # they stand before the surface: a parallax
     layer.material_override = materials.backplate_material(place)
     layer.use_pass_environment = True
     layer.samples = BACKPLATE_SAMPLES
