@@ -1,4 +1,4 @@
-"""A region of a depth map cut into parts that lie in one plane each, and are not wide for their distance."""
+"""A region of a depth map cut into parts that lie in one plane each and are not wide for their distance."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ THICKNESS = 0.03
 """A part is cut by its distance from its plane while that reaches this share of its distance."""
 PLANAR = 0.02
 """Points tell their plane where their variance across it is less than this share of the least along it."""
+LEAST_NORMAL = 1e-3
+"""Where the normals cancel out, a part faces the origin."""
 WIDTH = 1.2
 """A part is halved while it is longer than this multiple of its distance."""
 MOST_CUTS = 6
@@ -19,7 +21,7 @@ MOST_CUTS = 6
 
 
 @dataclass(frozen=True)
-class Samples:
+class Part:
     """Pixels (n,) by flat index: where they lie (n, 3) [m], normals there (n, 3), solid angles (n,) [sr]."""
 
     pixels: np.ndarray
@@ -27,11 +29,11 @@ class Samples:
     normals: np.ndarray
     solid_angles: np.ndarray
 
-    def __getitem__(self, chosen) -> Samples:
-        return Samples(*(values[chosen] for values in vars(self).values()))
+    def __getitem__(self, chosen) -> Part:
+        return Part(*(values[chosen] for values in vars(self).values()))
 
     def plane(self):
-        """Middle (3,) and unit normal (3,), towards the origin, of the plane in which the samples lie.
+        """Middle (3,) and unit normal (3,), towards the origin, of the plane in which the pixels lie.
 
         Fitted to the points where these tell it, else the mean of their normals.
         """
@@ -41,7 +43,9 @@ class Samples:
         variances, axes = np.linalg.eigh((offsets * weights[:, None]).T @ offsets)
         normal = weights @ self.normals
         if variances[0] < PLANAR * variances[1]:
-            normal = axes[:, 0] * np.sign(axes[:, 0] @ normal)
+            normal = axes[:, 0] * (1 if axes[:, 0] @ middle < 0 else -1)
+        elif np.linalg.norm(normal) < LEAST_NORMAL:
+            normal = -middle
         return middle, normal / np.linalg.norm(normal)
 
 
@@ -62,21 +66,21 @@ def surface_normals(points: np.ndarray) -> np.ndarray:
     return normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-30)
 
 
-def flat_parts(samples: Samples, cuts_left: int = MOST_CUTS) -> list[Samples]:
-    """Cut samples by their two main normals, by their distances from the plane, or across, until flat."""
-    first = _first_part(samples) if cuts_left else None
+def flat_parts(part: Part, cuts_left: int = MOST_CUTS) -> list[Part]:
+    """Cut a part by its two main normals, by its distances from its plane, or across, until all are flat."""
+    first = _first_piece(part) if cuts_left else None
     if first is None or first.all() or not first.any():
-        return [samples]
-    return flat_parts(samples[first], cuts_left - 1) + flat_parts(samples[~first], cuts_left - 1)
+        return [part]
+    return flat_parts(part[first], cuts_left - 1) + flat_parts(part[~first], cuts_left - 1)
 
 
-def _first_part(samples):
-    """Which samples (n,) to cut off; None where the whole is flat and narrow."""
-    middle, normal = samples.plane()
-    weights = samples.solid_angles / samples.solid_angles.sum()
-    if weights @ (samples.normals @ normal) < FLATNESS:
-        return _nearer_first_normal(samples, normal)
-    offsets = samples.points - middle
+def _first_piece(part):
+    """Which pixels (n,) to cut off; None where the whole is flat and narrow."""
+    middle, normal = part.plane()
+    weights = part.solid_angles / part.solid_angles.sum()
+    if weights @ (part.normals @ normal) < FLATNESS:
+        return _nearer_first_normal(part, normal)
+    offsets = part.points - middle
     heights = offsets @ normal
     distance = np.linalg.norm(middle)
     if np.ptp(heights) > THICKNESS * distance:
@@ -87,11 +91,11 @@ def _first_part(samples):
     return None
 
 
-def _nearer_first_normal(samples, mean_normal):
-    """Which samples (n,) belong to the one of the two most different normals."""
-    one = samples.normals[np.argmin(samples.normals @ mean_normal)]
-    other = samples.normals[np.argmin(samples.normals @ one)]
-    return samples.normals @ one > samples.normals @ other
+def _nearer_first_normal(part, mean_normal):
+    """Which pixels (n,) belong to the one of the two most different normals."""
+    one = part.normals[np.argmin(part.normals @ mean_normal)]
+    other = part.normals[np.argmin(part.normals @ one)]
+    return part.normals @ one > part.normals @ other
 
 
 def _widest_gap(values):

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import equirectangular
-from .flat_parts import Samples, flat_parts, surface_normals
+from .flat_parts import Part, flat_parts, surface_normals
 from .light_map import check_light_map, luminance
 from .outline import outlines_of_part, solid_angle_of_outline
 from .quiet import noise, quiet_map
@@ -98,7 +98,7 @@ def _strongest_parts(bright, depth, power, solid_angles):
     parts = []
     for region in connected_regions(bright):
         if power[region].sum() >= LEAST_SHARE * power.sum():
-            parts += flat_parts(Samples(region, points[region], normals[region], solid_angles[region]))
+            parts += flat_parts(Part(region, points[region], normals[region], solid_angles[region]))
     parts = [part for part in parts if power[part.pixels].sum() >= LEAST_SHARE * power.sum()]
     return sorted(parts, key=lambda part: -power[part.pixels].sum())
 

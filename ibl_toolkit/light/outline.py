@@ -26,7 +26,7 @@ LEAST_COSINE = 0.05
 
 
 def outlines_of_part(part, width: int, height: int) -> tuple[np.ndarray, ...]:
-    """Return the outlines, (k, 3) each [m], of `flat_parts.Samples` of a map of width × height pixels.
+    """Return the outlines, (k, 3) each [m], of a `flat_parts.Part` of a map of width × height pixels.
 
     At least one; holes are filled. Counter-clockwise as seen from the origin.
     """
