@@ -18,6 +18,7 @@ BEHIND = 1.02
 """A point this many times as far as the depth map says is hidden."""
 SUBPIXEL_BITS = 4
 ROLE_COLOURS = {"SUPPORT": (255, 176, 32), "ENVIRONMENT": (64, 200, 255)}
+LAMP_COLOUR = (255, 60, 200)
 HORIZON_COLOUR, XZ_COLOUR, YZ_COLOUR = (90, 130, 255), (255, 90, 90), (100, 220, 110)
 """Planes xy (the horizon), xz and yz, as in Fig. 5-3; sRGB."""
 
@@ -31,6 +32,14 @@ def draw_pieces(picture, pieces, world_from_panorama, camera_height, depth=None,
         points = (piece.mesh.world_vertices - (0, 0, camera_height)) @ world_from_panorama
         for first, second in sorted(_edges(piece.mesh.faces)):
             draw_segment(picture, points[first], points[second], ROLE_COLOURS[piece.role], thickness, depth)
+
+
+def draw_lamps(picture, lamps, thickness=2):
+    """Draw the outlines of `light.lamps.Lamp`s."""
+    for lamp in lamps:
+        for outline in lamp.outlines:
+            for first, second in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+                draw_segment(picture, first, second, LAMP_COLOUR, thickness)
 
 
 def draw_axis_planes(picture, world_from_panorama, thickness=1):

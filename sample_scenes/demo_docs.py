@@ -12,7 +12,7 @@ QUALITY = 88
 
 
 def write_pictures(demo, folder):
-    """Write hotel_room.jpg (before and after), and the panorama, reconstruction and depth as JPEG."""
+    """Write hotel_room.jpg (before and after), and panorama, reconstruction, depth and lamps as JPEG."""
     folder.mkdir(parents=True, exist_ok=True)
     before, after = (read_srgb(demo / name) for name in ("frame_before.png", "frame.png"))
     gap = np.full((before.shape[0], GAP, 3), 255, np.uint8)
@@ -20,6 +20,7 @@ def write_pictures(demo, folder):
     _write(folder / "hotel_room_panorama.jpg", read_srgb(demo / "panorama.png"), 1024)
     _write(folder / "hotel_room_reconstruction.jpg", read_srgb(demo / "reconstruction.png"), 1400)
     _write(folder / "hotel_room_depth.jpg", read_srgb(demo / "depth.png"), 1024)
+    _write(folder / "hotel_room_lamps.jpg", read_srgb(demo / "lamps.png"), 1024)
 
 
 def _write(path, picture, width):

@@ -85,6 +85,7 @@ def run_job(scene: bpy.types.Scene, folder: Path, effort: Effort, progress) -> d
             folder / "reconstruction.png", photograph, pieces, calibration, depth.depth
         )
         demo_pictures.write_depth(folder / "depth.png", depth.depth)
+        demo_pictures.write_lamps(folder / "lamps.png", photograph, depth)
         covered = covered_by_objects(made, objects, depth.depth)
     report = {
         "blender": bpy.app.version_string,
@@ -146,7 +147,7 @@ def render_without(scene, objects, camera, picture, path):
 
 def covered_by_objects(made, objects, depth) -> np.ndarray:
     """Where (H, W) new objects, or pixels at their edges, are in the panorama picture."""
-    with capture.temporary_scene(made, depth.shape[1], samples=1) as taken:
+    with capture.temporary_scene(made, depth.shape[1], samples=1, with_lamps=False) as taken:
         capture.sample_pixel_centres(taken)
         taken.world = None
         for thing in objects:

@@ -26,6 +26,8 @@ def page(report: dict) -> str:
         roles=_roles(),
         colours=_colours(),
         ticks=_ticks(),
+        lamps=str(report["lights"]["count"]),
+        lamp_share=_percent(report["lights"]["share"], 0),
         nearest=f"{depth['nearest']:.2f}",
         farthest=f"{depth['farthest']:.2f}",
         coverage=_percent(depth["coverage"], 1),

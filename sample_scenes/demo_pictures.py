@@ -11,6 +11,7 @@ from ..ibl_toolkit import overlay
 from ..ibl_toolkit.false_colour import depth_colours
 from ..ibl_toolkit.images import exposure_for, replacing
 from ..ibl_toolkit.images.png import srgb_from_linear
+from ..ibl_toolkit.light.lamps import split_into_lamps
 
 LINES_WIDTH = 2048
 """Lines are drawn on a picture of this width [px], whatever the photograph's."""
@@ -22,17 +23,30 @@ NEAREST, FARTHEST = 0.8, 3.5
 
 def write_reconstruction(path, photograph, pieces, calibration, depth):
     """The rebuilt pieces' visible edges and the axes' planes over the dimmed photograph."""
-    display = srgb_from_linear(photograph * exposure_for(photograph) * DIMMED)
-    picture = np.round(display * 255).astype(np.uint8)
-    picture = cv2.resize(picture, (LINES_WIDTH, LINES_WIDTH // 2), interpolation=cv2.INTER_CUBIC)
+    picture = _dimmed(photograph)
     overlay.draw_axis_planes(picture, calibration.world_from_panorama)
     overlay.draw_pieces(picture, pieces, calibration.world_from_panorama, calibration.camera_height, depth)
+    write_srgb(path, picture)
+
+
+def write_lamps(path, photograph, depth):
+    """The outlines of the photograph's lamps, as the preparation makes them lights at their depth."""
+    picture = _dimmed(photograph)
+    at_depth = np.where(depth.is_support, np.inf, depth.depth)
+    overlay.draw_lamps(picture, split_into_lamps(np.maximum(photograph, 0), at_depth).lamps)
     write_srgb(path, picture)
 
 
 def write_depth(path, depth):
     """The depth map in colours from NEAREST to FARTHEST."""
     write_srgb(path, depth_colours(depth, NEAREST, FARTHEST))
+
+
+def _dimmed(photograph):
+    """The photograph as (H, W, 3) sRGB, darker and as wide as LINES_WIDTH."""
+    display = srgb_from_linear(photograph * exposure_for(photograph) * DIMMED)
+    picture = np.round(display * 255).astype(np.uint8)
+    return cv2.resize(picture, (LINES_WIDTH, LINES_WIDTH // 2), interpolation=cv2.INTER_CUBIC)
 
 
 def write_srgb(path, picture, quality=None):

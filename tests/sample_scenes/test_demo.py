@@ -23,7 +23,7 @@ STEPS = {
     "panorama",
     "page",
 }
-PICTURES = ("frame", "frame_before", "panorama", "panorama_before", "reconstruction", "depth")
+PICTURES = ("frame", "frame_before", "panorama", "panorama_before", "reconstruction", "depth", "lamps")
 
 
 @pytest.fixture(scope="module")
