@@ -1,5 +1,6 @@
 """A few objects and a camera for tiny renders, without any place: what is lit is the test's own."""
 
+import bpy  # isort: skip; the two below come with it
 import bmesh
 from mathutils import Vector
 
@@ -10,7 +11,7 @@ from expanded_panoramas.sample_scenes.closed_room_truth import read_picture
 DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfRefraction"
 
 
-def material(bpy, kind, **inputs):
+def material(kind, **inputs):
     """A white material of one shader; its inputs by name."""
     made = bpy.data.materials.new(kind)
     made.use_nodes = True
@@ -21,9 +22,9 @@ def material(bpy, kind, **inputs):
     return made
 
 
-def mirror(bpy):
+def mirror():
     """Reflects all light, sharply."""
-    return material(bpy, GLOSSY, Roughness=0.0)
+    return material(GLOSSY, Roughness=0.0)
 
 
 def add_plane(scene, material, size, location=(0, 0, 0), normal=(0, 0, 1)):
@@ -43,8 +44,6 @@ def add_ball(scene, material, radius, location=(0, 0, 0)):
 
 
 def _add(scene, name, mesh, material, location, turn=None):
-    import bpy
-
     data = bpy.data.meshes.new(name)
     mesh.to_mesh(data)
     mesh.free()
@@ -57,7 +56,7 @@ def _add(scene, name, mesh, material, location, turn=None):
     return thing
 
 
-def add_camera(bpy, scene, eye, target, *, field_of_view=None, width=None):
+def add_camera(scene, eye, target, *, field_of_view=None, width=None):
     """The scene's camera: perspective of an angle [rad], or orthographic and so wide [m]."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = eye

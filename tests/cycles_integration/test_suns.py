@@ -69,8 +69,8 @@ def test_irradiance_on_a_plane_is_the_maps(fresh_blend, tmp_path, turn):
     """White and diffuse, its radiance is ∫ M cosθ dω / π; with suns, and without."""
     scene, here = place_of_map(fresh_blend, tmp_path, turn=turn)
     normal = np.array([0.2, -0.1, 1]) / np.linalg.norm([0.2, -0.1, 1])
-    small_scenes.add_plane(scene, small_scenes.material(fresh_blend, small_scenes.DIFFUSE), 2, normal=normal)
-    small_scenes.add_camera(fresh_blend, scene, normal, (0, 0, 0), width=1)
+    small_scenes.add_plane(scene, small_scenes.material(small_scenes.DIFFUSE), 2, normal=normal)
+    small_scenes.add_camera(scene, normal, (0, 0, 0), width=1)
     directions = equirectangular.pixel_directions(WIDTH, HEIGHT).astype(float)
     weights = np.maximum(directions @ (turn.T @ normal), 0)
     weights *= equirectangular.row_solid_angles(WIDTH, HEIGHT)[:, None] / np.pi
@@ -85,7 +85,7 @@ def test_irradiance_on_a_plane_is_the_maps(fresh_blend, tmp_path, turn):
 def test_the_sky_is_the_photograph(fresh_blend, tmp_path):
     scene, here = place_of_map(fresh_blend, tmp_path)
     lamp = TURNS["tilted"] @ LAMPS[0][0]
-    small_scenes.add_camera(fresh_blend, scene, (0, 0, 0), lamp * 2, field_of_view=1.0)
+    small_scenes.add_camera(scene, (0, 0, 0), lamp * 2, field_of_view=1.0)
     plain, with_suns = pictures(scene, here, tmp_path, (32, 32), 4)
     assert plain.max() > 30
     assert np.abs(with_suns - plain).max() < SAME
@@ -94,12 +94,12 @@ def test_the_sky_is_the_photograph(fresh_blend, tmp_path):
 def looked_into(bpy, scene, finish):
     """A mirror or glass ball, and a camera that finds both lamps in it."""
     if finish == "mirror":
-        small_scenes.add_ball(scene, small_scenes.mirror(bpy), 1)
-        small_scenes.add_camera(bpy, scene, (0, 0, 4), (0, 0, 0), width=2.1)
+        small_scenes.add_ball(scene, small_scenes.mirror(), 1)
+        small_scenes.add_camera(scene, (0, 0, 4), (0, 0, 0), width=2.1)
     else:
-        glass = small_scenes.material(bpy, small_scenes.GLASS, Roughness=0.0, IOR=1.3)
+        glass = small_scenes.material(small_scenes.GLASS, Roughness=0.0, IOR=1.3)
         small_scenes.add_ball(scene, glass, 1)
-        small_scenes.add_camera(bpy, scene, (0, 0, -4), (0, 0, 0), width=2.1)
+        small_scenes.add_camera(scene, (0, 0, -4), (0, 0, 0), width=2.1)
 
 
 @pytest.mark.parametrize("finish", ["mirror", "glass"])
@@ -119,8 +119,8 @@ def test_where_discs_overlap_a_mirror_shows_the_photograph_once(fresh_blend, tmp
     for radius, radiance in ((0.2, 3), (0.06, 60)):
         image[directions[..., 2] > np.cos(radius)] = radiance
     scene, here = place_of_map(fresh_blend, tmp_path, image, TURNS["level"])
-    small_scenes.add_plane(scene, small_scenes.mirror(fresh_blend), 2)
-    small_scenes.add_camera(fresh_blend, scene, (0.1, 0, 1), (0.1, 0, 0), width=0.1)
+    small_scenes.add_plane(scene, small_scenes.mirror(), 2)
+    small_scenes.add_camera(scene, (0.1, 0, 1), (0.1, 0, 0), width=0.1)
     scene.camera.data.type, scene.camera.data.angle = "PERSP", 0.6
     plain, with_suns = pictures(scene, here, tmp_path, (32, 32), 4)
     assert plain.max() > 50
@@ -130,9 +130,9 @@ def test_where_discs_overlap_a_mirror_shows_the_photograph_once(fresh_blend, tmp
 def test_a_rough_ball_reflects_no_more_and_no_less(fresh_blend, tmp_path):
     """What Cycles aims at and what glossy rays meet are weighed against each other, not added up."""
     scene, here = place_of_map(fresh_blend, tmp_path)
-    rough = small_scenes.material(fresh_blend, small_scenes.GLOSSY, Roughness=0.3)
+    rough = small_scenes.material(small_scenes.GLOSSY, Roughness=0.3)
     small_scenes.add_ball(scene, rough, 1)
-    small_scenes.add_camera(fresh_blend, scene, (0, 0, 4), (0, 0, 0), width=1.8)
+    small_scenes.add_camera(scene, (0, 0, 4), (0, 0, 0), width=1.8)
     plain, with_suns = pictures(scene, here, tmp_path, (32, 32), 128)
     assert with_suns.mean(axis=(0, 1)) == pytest.approx(plain.mean(axis=(0, 1)), rel=GLOSSY_MEAN)
 
@@ -140,8 +140,8 @@ def test_a_rough_ball_reflects_no_more_and_no_less(fresh_blend, tmp_path):
 def test_suns_are_quieter_than_the_plain_map(fresh_blend, tmp_path):
     """Else they would be of no use."""
     scene, here = place_of_map(fresh_blend, tmp_path)
-    small_scenes.add_plane(scene, small_scenes.material(fresh_blend, small_scenes.DIFFUSE), 2)
-    small_scenes.add_camera(fresh_blend, scene, (0, 0, 1), (0, 0, 0), width=1)
+    small_scenes.add_plane(scene, small_scenes.material(small_scenes.DIFFUSE), 2)
+    small_scenes.add_camera(scene, (0, 0, 1), (0, 0, 0), width=1)
     plain, with_suns = pictures(scene, here, tmp_path, (16, 16), 16)
     assert (with_suns.std(axis=(0, 1)) < QUIETER * plain.std(axis=(0, 1))).all()
 
@@ -151,8 +151,8 @@ def test_none_is_the_plain_map_again(fresh_blend, tmp_path):
     from expanded_panoramas.cycles_integration import world
 
     scene, here = place_of_map(fresh_blend, tmp_path)
-    small_scenes.add_ball(scene, small_scenes.material(fresh_blend, small_scenes.DIFFUSE), 1)
-    small_scenes.add_camera(fresh_blend, scene, (0, 0, 4), (0, 0, 0), width=2.1)
+    small_scenes.add_ball(scene, small_scenes.material(small_scenes.DIFFUSE), 1)
+    small_scenes.add_camera(scene, (0, 0, 4), (0, 0, 0), width=2.1)
     world.build_world(scene, here, whole_map_lights=True)
     scene.world.cycles.sampling_method, scene.world.cycles.sample_map_resolution = "MANUAL", 2 * WIDTH
     never = small_scenes.render(scene, tmp_path / "never.exr", (24, 24), 8, seed=3)
@@ -200,9 +200,7 @@ def test_suns_turn_with_the_origin(fresh_blend, tmp_path):
 
     scene, here = place_of_map(fresh_blend, tmp_path, turn=np.eye(3))
     looked_into(fresh_blend, scene, "mirror")
-    small_scenes.add_plane(
-        scene, small_scenes.material(fresh_blend, small_scenes.DIFFUSE), 0.4, location=(0.85, 0.85, 0)
-    )
+    small_scenes.add_plane(scene, small_scenes.material(small_scenes.DIFFUSE), 0.4, location=(0.85, 0.85, 0))
     with_most(scene, here, 8)
     set_calibration(here, TURNS["tilted"], 1.5)
     turned = small_scenes.render(scene, tmp_path / "turned.exr", (32, 32), 8)
