@@ -42,7 +42,7 @@ def quiet_map(image: np.ndarray, lamps: np.ndarray, *, behind_lamps: bool) -> np
 
 def _spread_into_holes(power, area):
     """Give pixels without area what is around them: a lamp hides them, yet look-ups beside it reach them."""
-    kernel = np.full((3, 3), 1 / 9)  # summed afresh for each pixel: cv2.blur's running sums leave a trace of zeros
+    kernel = np.full((3, 3), 1 / 9)  # cv2.blur would leave traces in its running sums
     while (holes := area <= 0).any():
         around = cv2.filter2D(power, -1, kernel), cv2.filter2D(area, -1, kernel)
         if not around[1].any():
