@@ -34,14 +34,14 @@ def on_ceiling(points, centre=LAMP, size=LAMP_SIZE):
     return near & (points[..., 2] > HIGH[2] - 1e-6)
 
 
-def lamp_map(*lamps):
-    """Dark walls; a smoothly uneven lamp for each (centre, size, radiance), or the usual one."""
+def lamp_map(*lamps, slope=0.0):
+    """Dark walls; a lamp for each (centre, size, radiance), or the usual one; ``slope`` makes it uneven."""
     points, _ = box_points()
     image = np.full((HEIGHT, WIDTH, 3), WALL_RADIANCE)
     for centre, size, radiance in lamps or ((LAMP, LAMP_SIZE, LAMP_RADIANCE),):
         pixels = on_ceiling(points, centre, size)
-        slope = 1 + 0.3 * (points[pixels][:, :1] - centre[0]) / size
-        image[pixels] = radiance * slope
+        across = 1 + slope * (points[pixels][:, :1] - centre[0]) / size
+        image[pixels] = radiance * across
     return image.astype(np.float32)
 
 

@@ -26,8 +26,8 @@ from expanded_panoramas.ibl_toolkit import equirectangular
 
 SIGMAS = 4.5  # of the mean of 64 pixels, in three channels
 PLAIN_NOISE = 0.02  # relative, of the mean of 512 samples
-LAMP_SHAPE = 0.015  # relative irradiance: outlines follow pixels of 2 cm
-NEAR = 0.05  # relative, 5 cm before a lamp of 40 cm that is 20 pixels wide
+LAMP_SHAPE = 0.0075  # relative irradiance: outlines follow pixels of 2 cm
+NEAR = 0.04  # relative, 5 cm before a lamp of 40 cm that is 20 pixels wide
 
 
 def irradiance(image, point, normal):

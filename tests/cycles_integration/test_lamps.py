@@ -27,7 +27,7 @@ def pictures(bpy, scene, folder, material, size, samples, eye=BESIDE):
 @pytest.mark.parametrize("finish", ["mirror", "glass"])
 def test_mirror_and_glass_show_the_photograph(fresh_blend, tmp_path, finish):
     """But for pixels at the lamp's rim: it stands a little before the ceiling, with straight edges."""
-    scene, _ = box_room(fresh_blend, tmp_path, lamp_map())
+    scene, _ = box_room(fresh_blend, tmp_path, lamp_map(slope=0.3))
     glass = small_scenes.material(small_scenes.GLASS, Roughness=0.0, IOR=1.3)
     material = small_scenes.mirror() if finish == "mirror" else glass
     eye = BESIDE if finish == "mirror" else BELOW
