@@ -160,8 +160,9 @@ def test_where_depth_is_missing_the_lamp_shines_from_infinity(fresh_blend, tmp_p
     scene, here = box_room(fresh_blend, tmp_path, image, without=HIGH[2])
     (x, y, z), (_, low, _) = HIGH, LOW
     add_surface(fresh_blend, scene, here, [(0, low, z), (x, low, z), (x, y, z), (0, y, z)])
-    prepared = prepare(scene)
+    prepared = prepare(scene, 8)
     assert prepared.at_depth.count == 1
+    assert prepared.at_infinity.count  # for another method: these suns do not shine here
     assert prepared.coverage < 0.95
     point = np.array([0.8, 0.0, -0.5])
     directions = equirectangular.pixel_directions(WIDTH, HEIGHT).astype(float)
