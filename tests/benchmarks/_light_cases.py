@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
+from _light_aiming import aim_at_bright_faces
 from mathutils import Vector
 
 from expanded_panoramas import cycles_integration
@@ -34,7 +35,8 @@ from expanded_panoramas.sample_scenes.closed_room_set import closed_room_set
 CACHE = pathlib.Path(__file__).resolve().parents[2] / "out" / "bench" / "light"
 WIDTH, HEIGHT = 128, 72
 PLAIN, DL, MPA, HIB, FORCED = "plain", "DL", "MPA", "HIB", "HIB, forced"
-MOST_LIGHTS = {PLAIN: 0, HIB: None, FORCED: 16}
+REFERENCE = "reference"
+MOST_LIGHTS = {PLAIN: 0, REFERENCE: 0, HIB: None, FORCED: 16}
 DIRECTIONAL_LIGHTS, PRE_SAMPLES, PRE_WIDTH = 64, 1024, 128
 AIM_WIDTH = 4 * PRE_WIDTH  # Cycles aims by steps, at pixels it interpolates: as coarse, the noise is 3 × this
 HOTEL = "hotel room"
@@ -138,6 +140,8 @@ def _room(case, way):
     for thing in roles.with_role(scene, roles.SUPPORT):
         thing.data.materials.clear()
         thing.data.materials.append(grey)
+    if way == REFERENCE:
+        aim_at_bright_faces(scene)
     return Lit(scene, prepared.at_depth)
 
 

@@ -1,4 +1,4 @@
-"""Converged pictures of the plain set-up, rendered once and kept in out/bench/light/: two halves per case."""
+"""Converged pictures without any split, rendered once and kept in out/bench/light/: two halves per case."""
 
 import os
 import sys
@@ -6,13 +6,13 @@ import sys
 import _light_cases as cases
 import numpy as np
 
-HALF_SAMPLES = {"room, large lamps": 1024, "room, small lamps": 1024, "hotel room": 1536, "studio": 512}
+HALF_SAMPLES = {"room, large lamps": 1024, "room, small lamps": 512, "hotel room": 512, "studio": 512}
 MAP_HALF_SAMPLES = 128
 SEEDS = 101, 202
 
 
 def half_samples(case):
-    """Samples of each half: what the noise of the plain set-up asks for."""
+    """Samples of each half: what the noise asks for."""
     return HALF_SAMPLES.get(case.place, MAP_HALF_SAMPLES)
 
 
@@ -22,7 +22,7 @@ def reference(case):
     lit = None
     for path, seed in zip(paths, SEEDS, strict=True):
         if not path.exists():
-            lit = lit or cases.light(case, cases.PLAIN)
+            lit = lit or cases.light(case, cases.REFERENCE)
             picture, seconds = lit.render(half_samples(case), seed)
             temporary = path.with_suffix(".part.npy")
             np.save(temporary, picture)

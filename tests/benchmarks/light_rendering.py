@@ -14,7 +14,6 @@ import sys
 import _light_cases as cases
 import _light_charts as charts
 import _light_errors as errors
-import numpy as np
 from _light_cases import DL, FORCED, HIB, MPA, PLAIN, Case
 from _light_references import half_samples, reference
 
@@ -104,20 +103,9 @@ def figures(case, measured):
         "reference_samples": 2 * half_samples(case),
         "ratios": {way: errors.time_ratio(plain, ways[way]) for way in ways if way != PLAIN},
         "flip_ratios": {way: errors.time_ratio(plain, ways[way], "flip") for way in ways if way != PLAIN},
-        "left_alone": is_left_alone(measured),
+        "left_alone": not measured[HIB][0].count,
         "ways": ways,
     }
-
-
-def is_left_alone(measured):
-    """Whether the hybrid took no light out of the map. Then its pictures must be the plain ones."""
-    (_, plain), (lights, hybrid) = measured[PLAIN], measured[HIB]
-    if lights.count:
-        return False
-    for samples in plain.keys() & hybrid.keys():
-        for (p, _), (h, _) in zip(plain[samples], hybrid[samples], strict=True):
-            np.testing.assert_allclose(h, p, rtol=1e-2, atol=1e-3)  # sums of samples in another order
-    return True
 
 
 def summary(rows):
@@ -206,7 +194,8 @@ def caption():
         f"regions. {MPA}: a pre-sampling map of {cases.PRE_SAMPLES} regions, {cases.PRE_WIDTH} pixels wide, "
         f"lights; camera, glossy and transmission rays see the map. {HIB}: the default of this project. "
         f"{FORCED}: {cases.MOST_LIGHTS[FORCED]} lights or fewer where the default leaves a map alone. Rooms: "
-        "method single, supports made grey, so that no bake enters. References: the plain set-up"
+        "method single, supports made grey, so that no bake enters. References: the whole map, without a "
+        "split; in rooms on a mesh of faces so small that Cycles can aim at its bright ones"
     )
 
 
