@@ -16,6 +16,7 @@ import numpy as np
 import OpenEXR
 from mathutils import Euler, Matrix
 
+from . import roles
 from .place import Place
 
 EQUIRECTANGULAR_FROM_CAMERA = Euler((math.pi / 2, 0, -math.pi / 2)).to_matrix().to_4x4()
@@ -38,9 +39,9 @@ def temporary_scene(place: Place, width: int, samples: int, *, with_lamps: bool 
     scene = bpy.data.scenes.new("Panorama Capture")
     camera = panorama_camera(place)
     try:
-        scene.collection.children.link(place.surfaces)
-        if not with_lamps:
-            scene.view_layers[0].layer_collection.children[0].children[place.lights.name].exclude = True
+        for thing in place.surfaces.all_objects:
+            if with_lamps or roles.LAMP not in thing:
+                scene.collection.objects.link(thing)
         scene.collection.objects.link(camera)
         scene.camera = camera
         render = scene.render

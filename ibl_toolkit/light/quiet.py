@@ -35,8 +35,10 @@ def quiet_map(image: np.ndarray, lamps: np.ndarray, *, behind_lamps: bool) -> np
     left = np.where(lamps, 0, solid_angles)
     size = (min(WIDTH, width), min(WIDTH, width) * height // width)
     power = cv2.resize(image * left[..., None], size, interpolation=cv2.INTER_AREA)
-    area = cv2.resize(left if behind_lamps else solid_angles, size, interpolation=cv2.INTER_AREA)
-    power, area = _spread_into_holes(power, area)
+    if behind_lamps:
+        power, area = _spread_into_holes(power, cv2.resize(left, size, interpolation=cv2.INTER_AREA))
+    else:
+        area = equirectangular.row_solid_angles(*size)[:, None] * (size[0] * size[1] / lamps.size)
     return (power / area[..., None]).astype(np.float32)
 
 
