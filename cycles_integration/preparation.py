@@ -70,7 +70,8 @@ def prepare_suns(scene: bpy.types.Scene, place: Place, most_lights: int | None =
     split = suns.replace_suns(place, _light_map(place, _lights_width(place)), most_lights)
     world.build_world(scene, place, whole_map_lights=True)
     view_layers.show_suns(scene, place, True)
-    return Lights(len(split.discs), split.share, _reason_for_suns(split, most_lights))
+    left_alone = "without its lamps this map would not be quiet: left to Cycles' own sampling"
+    return _lights(split.discs, "sun", split.share, most_lights, left_alone)
 
 
 def _split_lights(scene, place: Place, depth: maps.DepthMap, most_lights: int | None, report: Preparation):
@@ -84,7 +85,8 @@ def _split_lights(scene, place: Place, depth: maps.DepthMap, most_lights: int | 
     place.residual = blender_images.replace_image(place.residual, "Panorama Residual", quiet)
     sky = None if np.isfinite(depth.depth).all() else np.where(np.isfinite(depth.depth)[..., None], 0, image)
     place.sky = blender_images.replace_image(place.sky, "Panorama Sky", sky)
-    report.at_depth = Lights(len(split.lamps), split.share, _reason_for_lamps(split, most_lights))
+    left_alone = "no surface stands out of this map: left alone"
+    report.at_depth = _lights(split.lamps, "lamp", split.share, most_lights, left_alone)
     report.at_infinity = prepare_suns(scene, place, most_lights)
     report.warnings = warnings_of_map(image)
 
@@ -94,24 +96,11 @@ def _light_map(place, width):
     return np.maximum(maps.shrink(blender_images.array_from_image(place.image), width), 0)
 
 
-def _reason_for_lamps(split, most_lights):
-    if most_lights == 0:
-        return "no lights, as asked"
-    if not split.lamps:
-        return "no surface stands out of this map: left alone"
-    return f"{_counted(len(split.lamps), 'lamp')} with {100 * split.share:.0f} % of the light"
-
-
-def _reason_for_suns(split, most_lights):
-    if most_lights == 0:
-        return "no lights, as asked"
-    if not split.discs:
-        return "without its lamps this map would not be quiet: left to Cycles' own sampling"
-    return f"{_counted(len(split.discs), 'sun')} with {100 * split.share:.0f} % of the light"
-
-
-def _counted(count, thing):
-    return f"{count} {thing}{'' if count == 1 else 's'}"
+def _lights(found, thing, share, most_lights, left_alone) -> Lights:
+    """What was found, with the reason in one sentence."""
+    plural = "" if len(found) == 1 else "s"
+    reason = f"{len(found)} {thing}{plural} with {100 * share:.0f} % of the light" if found else left_alone
+    return Lights(len(found), share, "no lights, as asked" if most_lights == 0 else reason)
 
 
 def _measure_light(scene, place):
