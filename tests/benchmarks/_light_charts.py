@@ -7,6 +7,7 @@ from _light_cases import DL, FORCED, HIB, MPA, PLAIN
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 CHARTS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "charts"
 # Okabe and Ito: told apart by everyone.
@@ -36,7 +37,8 @@ def draw(document):
         for way, values in row["ways"].items():
             if way != HIB or not row["left_alone"]:
                 _line(axis, values["points"], way)
-        of_hybrid = "left alone" if row["left_alone"] else f"{row['ratios'][HIB]:.2g} ×"
+        ratio = row["ratios"][HIB]
+        of_hybrid = "left alone" if row["left_alone"] else f"{ratio:.{0 if ratio >= 10 else 1}f} ×"
         axis.set_title(f"{row['place']}, {row['kind']}: {of_hybrid}")
     for axis in axes[-1]:
         axis.set_xlabel("processor seconds")
@@ -77,7 +79,7 @@ def _settings():
     plt.rcParams.update(
         {
             "font.size": 8,
-            "axes.titlesize": 8.5,
+            "axes.titlesize": 7.5,
             "axes.spines.top": False,
             "axes.spines.right": False,
             "lines.markersize": 3.5,
@@ -90,6 +92,7 @@ def _line(axis, points, way):
     shown = [point for point in points if point["mse"] > 0]
     axis.plot([p["seconds"] for p in shown], [p["mse"] for p in shown], **STYLES[way])
     axis.set(xscale="log", yscale="log")
+    axis.yaxis.set_minor_formatter(NullFormatter())
     axis.grid(alpha=0.3)
 
 
