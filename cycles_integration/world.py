@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from .lookup import environment_texture, in_panorama_frame, is_looked_at
-from .node_trees import add, mix_vectors, vector_maths
+from .node_trees import add, vector_maths
 from .place import Place, own_name
 from .suns import radiance_of_suns
 
@@ -28,18 +28,14 @@ def build_world(scene: bpy.types.Scene, place: Place, *, whole_map_lights: bool 
     tree = world.node_tree
     tree.nodes.clear()
     direction = in_panorama_frame(tree, place.origin, add(tree, "ShaderNodeTexCoord").outputs["Generated"])
-    seen = environment_texture(tree, place.image, direction)
-    if not whole_map_lights:
-        light = environment_texture(tree, place.sky, direction) if place.sky else (0, 0, 0)
-    elif place.sun_quiet:
-        light = environment_texture(tree, place.sun_quiet, direction)
-        seen = _beside_suns(tree, place, direction, seen)
+    photograph = environment_texture(tree, place.image, direction)
+    if whole_map_lights and place.sun_quiet:
+        surface = _beside_suns(tree, place, direction, photograph)
+    elif whole_map_lights:
+        surface = _background(tree, photograph)
     else:
-        light = seen
-    surface = _background(tree, light)
-    if light != seen:
-        surfaces = {0: is_looked_at(tree), 1: surface, 2: _background(tree, seen)}
-        surface = add(tree, "ShaderNodeMixShader", surfaces).outputs[0]
+        sky = environment_texture(tree, place.sky, direction) if place.sky else (0, 0, 0)
+        surface = _choice(tree, is_looked_at(tree), _background(tree, sky), _background(tree, photograph))
     add(tree, "ShaderNodeOutputWorld", {"Surface": surface})
     is_aimed_at = not place.sun_quiet if whole_map_lights else place.sky
     world.cycles.sampling_method = "MANUAL" if is_aimed_at else "NONE"
@@ -48,18 +44,28 @@ def build_world(scene: bpy.types.Scene, place: Place, *, whole_map_lights: bool 
     return world
 
 
+def _beside_suns(tree, place, direction, photograph):
+    """The photograph to the camera; the quiet map to diffuse light; to reflections what the suns do not show.
+
+    Reflected and refracted rays meet the suns as well. A perfectly sharp one gets the difference, which is
+    negative here and there: with the sun it makes the photograph. To a blurred one that would be noise; it
+    sees the lamps as the suns' discs.
+    """
+    rays = add(tree, "ShaderNodeLightPath").outputs
+    sharp = vector_maths(tree, "SUBTRACT", photograph, radiance_of_suns(place, tree, direction))
+    blurred = environment_texture(tree, place.sun_residual, direction)
+    quiet = environment_texture(tree, place.sun_quiet, direction)
+    reflected = _choice(
+        tree, rays["Is Singular Ray"], _background(tree, blurred), _background(tree, sharp)
+    )
+    seen = _choice(tree, rays["Is Camera Ray"], reflected, _background(tree, photograph))
+    return _choice(tree, is_looked_at(tree), _background(tree, quiet), seen)
+
+
 def _background(tree, colour):
     return add(tree, "ShaderNodeBackground", {"Color": colour}).outputs[0]
 
 
-def _beside_suns(tree, place, direction, photograph):
-    """The photograph; to reflected and refracted rays, which meet the suns as well, without what these show.
-
-    A perfectly sharp reflection gets the difference, which is negative here and there: with the sun it makes
-    the photograph. To a blurred one that would be noise; it sees the lamps as the suns' discs.
-    """
-    sharp = vector_maths(tree, "SUBTRACT", photograph, radiance_of_suns(place, tree, direction))
-    blurred = environment_texture(tree, place.sun_residual, direction)
-    rays = add(tree, "ShaderNodeLightPath").outputs
-    reflected = mix_vectors(tree, rays["Is Singular Ray"], blurred, sharp)
-    return mix_vectors(tree, rays["Is Camera Ray"], reflected, photograph)
+def _choice(tree, factor, first, second):
+    """One of two shaders; Cycles computes only that, which a mix of colours would not spare it."""
+    return add(tree, "ShaderNodeMixShader", {0: factor, 1: first, 2: second}).outputs[0]

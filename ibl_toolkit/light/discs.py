@@ -1,9 +1,9 @@
 """The lamps of a map at infinity as discs: few sun lights that light as the lamps do, and a quiet map.
 
-A sun light is a disc of constant radiance. Each bright region becomes one for its core, with the region's
-vector irradiance and second moment, and one for the halo around it. Where that leaves a map so quiet that
-the renderer need not aim at it any more, all its aiming goes to the suns; elsewhere its own sampling of the
-map is as good or better, and the map is best left alone.
+A sun light is a disc of constant radiance. Each bright region becomes one, with the region's vector
+irradiance and second moment. Where that leaves a map so quiet that the renderer need not aim at it any more,
+all its aiming goes to the suns; elsewhere its own sampling of the map is as good or better, and the map is
+best left alone.
 
 Source: thesis, section 3.2 (hybrid scheme); the criterion was found by measurement.
 """
@@ -21,12 +21,12 @@ from .regions import connected_regions
 
 BRIGHT = 4.0
 """A pixel is bright above this multiple of the map's mean luminance over the sphere."""
-LEAST_CORE, LEAST_HALO = 0.004, 0.002
-"""A lamp, or its halo, with less of the map's light stays in the quiet map."""
+LEAST_SHARE = 0.004
+"""A lamp with less of the map's light stays in the quiet map."""
 ROUND = 0.3
 """A region whose spread across is less than this share of that along is halved."""
 WIDEST = 0.35
-"""Radius of the widest disc [rad]: a wider core is halved, a wider halo stays in the quiet map."""
+"""Radius of the widest disc [rad]: a wider lamp is halved."""
 QUIET = 0.1
 """Noise of the residual up to which the renderer gains by the lights (`quiet.noise`)."""
 MOST = 32
@@ -79,20 +79,21 @@ def split_into_discs(image: np.ndarray, most: int = MOST) -> DiscSplit:
     >>> image[20:24, 40:48] = 100
     >>> found = split_into_discs(image)
     >>> len(found.discs), found.helps
-    (2, True)
+    (1, True)
     """
     sphere = _Sphere(check_light_map(image))
     bright = sphere.luminance > BRIGHT * sphere.power.sum() / (4 * np.pi)
-    waiting = [r for r in connected_regions(bright.reshape(image.shape[:2])) if sphere.share(r) >= LEAST_CORE]
+    regions = connected_regions(bright.reshape(image.shape[:2]))
+    waiting = [region for region in regions if sphere.share(region) >= LEAST_SHARE]
     discs = []
     while waiting:
         waiting.sort(key=sphere.share)
         region = waiting.pop()
         parts = _halves(sphere, region)
         if parts is None:
-            discs += _core_and_halo(sphere, region)
+            discs.append(_disc(sphere, region))
         else:
-            waiting += [part for part in parts if sphere.share(part) >= LEAST_CORE]
+            waiting += [part for part in parts if sphere.share(part) >= LEAST_SHARE]
     discs = sorted(discs, key=lambda disc: -sphere.share(disc.pixels))[:most]
     taken = np.zeros(sphere.power.shape, bool)
     for disc in discs:
@@ -129,11 +130,6 @@ class _Sphere:
         """Mean square extent of one pixel along one axis [rad²]."""
         return (_PIXEL_SPREAD * np.pi / self.height) ** 2
 
-    def disc(self, direction, radius, pixels):
-        """The disc with the light of these pixels."""
-        weights = self.solid_angles[pixels] * (self.directions[pixels] @ direction)
-        return Disc(direction, float(radius), weights @ self.radiance[pixels].astype(float), pixels)
-
 
 def _halves(sphere, region):
     """A long or wide region cut across its longer axis, half of the light each; None for a round one."""
@@ -151,26 +147,14 @@ def _halves(sphere, region):
     return None if first.all() else (region[first], region[~first])
 
 
-def _core_and_halo(sphere, region):
-    """The disc of a region's core, with its second moment, and that of what lies around it."""
+def _disc(sphere, region):
+    """The disc with a region's middle, vector irradiance and second moment."""
     middle, weights = sphere.middle(region), sphere.power[region]
     directions = sphere.directions[region].astype(float)
-    radius = np.sqrt(
-        2 * (weights @ _squared_angles(directions, middle)) / weights.sum() + 4 * sphere.pixel_variance()
-    )
-    for _ in range(5):  # the middle of what the disc holds, not of the region
-        inside = _squared_angles(directions, middle) < radius**2
-        middle = sphere.middle(region[inside])
-    inside = _squared_angles(directions, middle) < radius**2
-    halo = region[~inside]
-    discs = [sphere.disc(middle, radius, region[inside])]
-    if sphere.share(halo) < LEAST_HALO:
-        return discs
-    middle = sphere.middle(halo)
-    reach = np.sqrt(_squared_angles(sphere.directions[halo].astype(float), middle).max())
-    if reach < WIDEST:
-        discs.append(sphere.disc(middle, reach + np.sqrt(4 * sphere.pixel_variance()), halo))
-    return discs
+    moment = weights @ _squared_angles(directions, middle) / weights.sum()
+    radius = np.sqrt(2 * moment + 4 * sphere.pixel_variance())
+    weights = sphere.solid_angles[region] * (directions @ middle)
+    return Disc(middle, float(radius), weights @ sphere.radiance[region].astype(float), region)
 
 
 def _squared_angles(directions, middle):
