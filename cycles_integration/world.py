@@ -55,9 +55,7 @@ def _beside_suns(tree, place, direction, photograph):
     sharp = vector_maths(tree, "SUBTRACT", photograph, radiance_of_suns(place, tree, direction))
     blurred = environment_texture(tree, place.sun_residual, direction)
     quiet = environment_texture(tree, place.sun_quiet, direction)
-    reflected = _choice(
-        tree, rays["Is Singular Ray"], _background(tree, blurred), _background(tree, sharp)
-    )
+    reflected = _choice(tree, rays["Is Singular Ray"], _background(tree, blurred), _background(tree, sharp))
     seen = _choice(tree, rays["Is Camera Ray"], reflected, _background(tree, photograph))
     return _choice(tree, is_looked_at(tree), _background(tree, quiet), seen)
 

@@ -113,8 +113,8 @@ def test_mirror_and_glass_show_the_photograph(fresh_blend, tmp_path, finish):
     assert np.abs(with_suns - plain).max() < SAME * plain.max()
 
 
-def test_where_discs_overlap_a_mirror_shows_the_photograph_once(fresh_blend, tmp_path):
-    """A lamp with a halo: one disc round the other."""
+def test_a_mirror_shows_an_uneven_lamp_as_it_is(fresh_blend, tmp_path):
+    """A bright core in a wide glow: the disc that stands for both is like neither."""
     image = np.full((HEIGHT, WIDTH, 3), 0.01, np.float32)
     directions = equirectangular.pixel_directions(WIDTH, HEIGHT)
     for radius, radiance in ((0.2, 3), (0.06, 60)):
