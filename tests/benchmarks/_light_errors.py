@@ -10,7 +10,7 @@ from expanded_panoramas.ibl_toolkit.light.light_map import LUMINANCE
 
 PICTURE = 960, 540
 TIMES_AS_MANY = PICTURE[0] * PICTURE[1] / (WIDTH * HEIGHT)
-DOTS_AT = 64
+DOTS_AT = 64, 256
 TARGETS = 9
 DEFINITIONS = {
     "mse": "linear radiance times the exposure that brings the reference's median to mid grey, clipped to "
@@ -27,8 +27,8 @@ DEFINITIONS = {
     "error x time constant beyond them. In the rooms, where the clip hides white dots, the plain mesh's "
     "error hardly falls with time, and the ratio is a lower bound",
     "bias_percent": "of mean unclipped radiance against the reference's, with its standard error",
-    "white_dots": f"pixels more than ten times above their neighbours and not so in the reference, at "
-    f"{DOTS_AT} samples, mean over the rounds",
+    "white_dots": "pixels more than ten times above their neighbours and not so in the reference; per "
+    "samples, mean over the rounds",
 }
 
 
@@ -93,10 +93,13 @@ def bias_percent(runs, halves):
 
 
 def white_dots(runs, halves):
-    """Mean count of new white dots."""
+    """Mean count of new white dots, by samples."""
     reference = np.mean(halves, axis=0)
-    dots = [metrics.new_white_dots(picture, reference).sum() for picture, _ in runs.get(DOTS_AT, [])]
-    return float(np.mean(dots)) if dots else None
+    return {
+        samples: float(np.mean([metrics.new_white_dots(picture, reference).sum() for picture, _ in rounds]))
+        for samples, rounds in runs.items()
+        if samples in DOTS_AT
+    }
 
 
 def time_ratio(plain, other, error="mse"):

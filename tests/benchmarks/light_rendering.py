@@ -14,6 +14,7 @@ import sys
 import _light_cases as cases
 import _light_charts as charts
 import _light_errors as errors
+import numpy as np
 from _light_cases import DL, FORCED, HIB, MPA, PLAIN, Case
 from _light_references import half_samples, reference
 
@@ -21,7 +22,7 @@ from expanded_panoramas import cycles_integration
 
 ROUNDS, MORE_ROUNDS = 2, {"studio": 4}  # of the one map that gets lights, for a steadier clock
 COUNTS, SUNS_COUNTS = (4, 64), (4, 16)
-PLAIN_ROOM_COUNTS, HYBRID_ROOM_COUNTS = (16, 64, 256), (1, 4, 16, 64)
+PLAIN_ROOM_COUNTS, HYBRID_ROOM_COUNTS = (16, 64, 256), (1, 4, 16, 64, 256)
 TABLE_CASE, TABLE_COUNTS, TABLE_WAYS = (
     Case("studio", "mixed"),
     (4, 16, 64, 256),
@@ -104,8 +105,18 @@ def figures(case, measured):
         "ratios": {way: errors.time_ratio(plain, ways[way]) for way in ways if way != PLAIN},
         "flip_ratios": {way: errors.time_ratio(plain, ways[way], "flip") for way in ways if way != PLAIN},
         "left_alone": not measured[HIB][0].count,
+        "same_pictures": same_pictures(measured[PLAIN][1], measured[HIB][1]),
         "ways": ways,
     }
+
+
+def same_pictures(runs, others):
+    """Whether both ways render the same, value for value, in all rounds."""
+    return runs.keys() == others.keys() and all(
+        np.array_equal(one, other)
+        for samples in runs
+        for (one, _), (other, _) in zip(runs[samples], others[samples], strict=True)
+    )
 
 
 def summary(rows):
@@ -122,7 +133,7 @@ def summary(rows):
         "rooms_time_ratio": errors.geometric_mean([place["time_ratio"] for place in rooms]),
         "maps_time_ratio": errors.geometric_mean([place["time_ratio"] for place in maps]),
         "least_map_time_ratio": min([1.0, *taken]),
-        "white_dots": sum(place["white_dots"] for place in lit),
+        "white_dots": total_dots([place["white_dots"] for place in lit]),
         "largest_bias_percent": max((place["bias_percent"] for place in lit), key=abs),
         "places": places,
     }
@@ -131,7 +142,8 @@ def summary(rows):
 def place_summary(rows):
     """Of the hybrid in one place, over its kinds of scene.
 
-    Where it leaves a map alone, its time is the plain one's, and what was measured tells the clock's noise.
+    Where it leaves a map alone, its scene is the plain one: the same pictures, value for value, and what was
+    measured of its time tells the clock's noise.
     """
     hybrids = [row["ways"][HIB] for row in rows]
     forced = [row["ratios"][FORCED] for row in rows if FORCED in row["ratios"]]
@@ -142,6 +154,7 @@ def place_summary(rows):
         "share": hybrids[0]["share"],
         "reason": hybrids[0]["reason"],
         "left_alone": left_alone,
+        "same_pictures": all(row["same_pictures"] for row in rows),
         "time_ratio": 1.0 if left_alone else measured,
         "measured_time_ratio": measured,
         "flip_time_ratio": errors.geometric_mean([row["flip_ratios"][HIB] for row in rows]),
@@ -156,9 +169,14 @@ def place_summary(rows):
         "bias_standard_error": errors.rounded(
             sum(h["bias_standard_error"] ** 2 for h in hybrids) ** 0.5 / count
         ),
-        "white_dots": sum(h["white_dots"] for h in hybrids),
-        "white_dots_plain": sum(row["ways"][PLAIN]["white_dots"] for row in rows),
+        "white_dots": total_dots([h["white_dots"] for h in hybrids]),
+        "white_dots_plain": total_dots([row["ways"][PLAIN]["white_dots"] for row in rows]),
     }
+
+
+def total_dots(counts):
+    """Sums of white dots, by samples."""
+    return {samples: sum(dots.get(samples, 0) for dots in counts) for samples in errors.DOTS_AT}
 
 
 def table(row):

@@ -187,6 +187,26 @@ def test_the_map_decides_and_says_why(fresh_blend, tmp_path):
     assert preparation.prepare_suns(scene, here, 0).reason == "no lights, as asked"
 
 
+def test_a_map_left_alone_renders_as_the_plain_one(fresh_blend, tmp_path):
+    """Value for value, for the same seed: the default costs nothing where it does not help."""
+    from expanded_panoramas.cycles_integration import preparation
+
+    overcast = np.full((HEIGHT, WIDTH, 3), 0.1, np.float32)
+    overcast[: HEIGHT // 2] = 1
+    scene, here = place_of_map(fresh_blend, tmp_path, overcast)
+    small_scenes.add_ball(scene, small_scenes.material(small_scenes.DIFFUSE), 1)
+    small_scenes.add_camera(scene, (0, 0, 4), (0, 0, 0), width=2.1)
+    plain, left_alone = (
+        (
+            preparation.prepare_suns(scene, here, most),
+            small_scenes.render(scene, tmp_path / "p.exr", (24, 24), 8),
+        )
+        for most in (0, None)
+    )
+    assert left_alone[0].count == 0
+    assert np.array_equal(left_alone[1], plain[1])
+
+
 def test_no_more_than_asked_for_the_strongest(fresh_blend, tmp_path):
     from expanded_panoramas.cycles_integration import preparation
 
