@@ -2,14 +2,26 @@
 
 import bpy
 
-from . import calibration, clipped_light, light, picking, pictures, probes, properties, set_files, surfaces
+from . import (
+    calibration,
+    clipped_light,
+    light,
+    picking,
+    pictures,
+    probes,
+    properties,
+    set_files,
+    surfaces,
+    view_properties,
+)
 
 OPERATORS = (set_files, picking, calibration, probes, surfaces, light, clipped_light, pictures)
 
 
 def register():
-    """Register the scene's panorama set, then the operators on it."""
+    """Register the scene's panorama set and its view settings, then the operators on them."""
     properties.register()
+    view_properties.register()
     for module in OPERATORS:
         for cls in module.classes:
             bpy.utils.register_class(cls)
@@ -20,4 +32,5 @@ def unregister():
     for module in reversed(OPERATORS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)
+    view_properties.unregister()
     properties.unregister()

@@ -1,0 +1,48 @@
+"""How a scene's 3D views show its panorama; saved in the .blend, beside the set."""
+
+import bpy
+from bpy.props import BoolProperty, FloatProperty, PointerProperty
+
+
+class PanoramaView(bpy.types.PropertyGroup):
+    """What the 3D views draw of the panorama, in solid, material preview and wireframe mode."""
+
+    show_background: BoolProperty(
+        name="Panorama Background",
+        description="Show the panorama behind the scene in 3D views; renders are not affected",
+        default=True,
+    )
+    exposure: FloatProperty(
+        name="Exposure",
+        description="Brightness of the shown panorama [EV]: +1 doubles it; light and renders stay as they are",
+        default=0,
+        soft_min=-8,
+        soft_max=8,
+        step=10,
+        precision=2,
+    )
+    opacity: FloatProperty(
+        name="Opacity",
+        description="Share of the panorama in the mix of wireframe mode: 0 hides it, 1 hides the theme behind it",
+        subtype="FACTOR",
+        default=0.5,
+        min=0,
+        max=1,
+    )
+    show_calibration: BoolProperty(
+        name="Calibration",
+        description="Draw horizon, vertical planes and picks over the panorama",
+        default=True,
+    )
+
+
+def register():
+    """Give every scene its view settings."""
+    bpy.utils.register_class(PanoramaView)
+    bpy.types.Scene.panorama_view = PointerProperty(type=PanoramaView)
+
+
+def unregister():
+    """Take them back."""
+    del bpy.types.Scene.panorama_view
+    bpy.utils.unregister_class(PanoramaView)
