@@ -14,7 +14,7 @@ class PanoramaView(bpy.types.PropertyGroup):
     )
     exposure: FloatProperty(
         name="Exposure",
-        description="Brightness of the shown panorama [EV]: +1 doubles it; light and renders stay as they are",
+        description="Brightness of the shown panorama [EV]: +1 doubles it. Renders stay as they are",
         default=0,
         soft_min=-8,
         soft_max=8,
@@ -23,7 +23,7 @@ class PanoramaView(bpy.types.PropertyGroup):
     )
     opacity: FloatProperty(
         name="Opacity",
-        description="Share of the panorama in the mix of wireframe mode: 0 hides it, 1 hides the theme behind it",
+        description="Share of the panorama in the mix of wireframe mode: 0 hides it, 1 shows it in full",
         subtype="FACTOR",
         default=0.5,
         min=0,
