@@ -12,6 +12,7 @@ from . import (
     properties,
     set_files,
     surfaces,
+    tools,
     view_properties,
 )
 
@@ -22,6 +23,7 @@ def register():
     """Register the scene's panorama set and its view settings, then the operators on them."""
     properties.register()
     view_properties.register()
+    tools.register()
     for module in OPERATORS:
         for cls in module.classes:
             bpy.utils.register_class(cls)
@@ -32,5 +34,6 @@ def unregister():
     for module in reversed(OPERATORS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)
+    tools.unregister()
     view_properties.unregister()
     properties.unregister()

@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import image_editor, lists, picture_panels, place_panels
+from . import image_editor, lists, overlays, picture_panels, place_panels
 
 PANELS = (lists, place_panels, picture_panels, image_editor)
 
@@ -12,10 +12,12 @@ def register():
     for module in PANELS:
         for cls in module.classes:
             bpy.utils.register_class(cls)
+    overlays.register()
 
 
 def unregister():
     """Take them back, in reverse."""
+    overlays.unregister()
     for module in reversed(PANELS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)

@@ -1,0 +1,108 @@
+"""Where Blender's editors show the panorama: mouse positions to image points and back.
+
+A 3D View shows it as its background, an Image Editor as the flat image. Both are a canvas: what is picked or
+drawn on one is drawn on all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..ibl_toolkit.equirectangular import direction_from_uv, uv_from_direction
+from ..ibl_toolkit.views import View
+
+UNCALIBRATED = np.eye(3), 1.5
+"""How the panorama is shown before it is calibrated: upright, from so high above the floor [m]."""
+EDITORS = ("VIEW_3D", "IMAGE_EDITOR")
+
+
+@dataclass(frozen=True, eq=False)
+class ViewCanvas:
+    """A 3D View's region."""
+
+    view: View
+
+    def uv_at(self, xy):
+        """The image point (2,) shown at (2,) [region px]; None where none is."""
+        direction = self.view.directions_at(np.asarray(xy, np.float64) + 0.5)
+        return uv_from_direction(direction) if direction.any() else None
+
+    def pixels_of(self, uv):
+        """Where image points (..., 2) are shown (..., 2) [region px]; NaN where they are not."""
+        return self.view.pixels_of(direction_from_uv(uv)) - 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class ImageCanvas:
+    """An Image Editor's region that shows the panorama: corner and size (2,) of the image [region px]."""
+
+    corner: np.ndarray
+    size: np.ndarray
+
+    def uv_at(self, xy):
+        """The image point (2,) shown at (2,) [region px]; None outside of the image."""
+        u, v = (np.asarray(xy, np.float64) + 0.5 - self.corner) / self.size
+        return np.array([u, 1 - v]) if 0 <= u <= 1 and 0 <= v <= 1 else None
+
+    def pixels_of(self, uv):
+        """Where image points (..., 2) are shown (..., 2) [region px]."""
+        u, v = np.moveaxis(np.asarray(uv, np.float64), -1, 0)
+        return np.stack([u, 1 - v], axis=-1) * self.size + self.corner - 0.5
+
+
+def canvas_of(context, area, region) -> ViewCanvas | ImageCanvas | None:
+    """The canvas of an editor's main region; None where it shows no panorama."""
+    state = context.scene.panorama_set
+    if region.type != "WINDOW" or state.image is None:
+        return None
+    if area.type == "VIEW_3D":
+        matrices = region.data.window_matrix, region.data.view_matrix
+        return ViewCanvas(
+            View.from_matrices(*matrices, *calibration_of(context.scene), (region.width, region.height))
+        )
+    if area.type == "IMAGE_EDITOR" and area.spaces.active.image == state.image:
+        corners = [np.array(region.view2d.view_to_region(u, u, clip=False), float) for u in (0, 1)]
+        return ImageCanvas(corners[0], corners[1] - corners[0])
+    return None
+
+
+def canvas_under(context, event):
+    """The (canvas, area, region, xy) under the mouse, in any editor of the window; None where none is.
+
+    xy (2,) [region px].
+    """
+    for area in context.window.screen.areas:
+        if area.type not in EDITORS:
+            continue
+        covered = [r for r in area.regions if r.type != "WINDOW" and _contains(r, event)]
+        for region in area.regions:
+            if region.type == "WINDOW" and _contains(region, event) and not covered:
+                canvas = canvas_of(context, area, region)
+                xy = np.array([event.mouse_x - region.x, event.mouse_y - region.y], float)
+                return canvas and (canvas, area, region, xy)
+    return None
+
+
+def redraw(context):
+    """Have all editors that may show the panorama drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in EDITORS:
+                area.tag_redraw()
+
+
+def calibration_of(scene):
+    """The rotation world_from_panorama (3, 3) and camera height [m] with which the panorama is shown."""
+    place = scene.panorama_place
+    if place.origin is None or not scene.panorama_set.result.is_solved:
+        return UNCALIBRATED
+    matrix = np.array(place.origin.matrix_world, np.float64)
+    rotation = np.linalg.qr(matrix[:3, :3])[0]  # the artist may have scaled the Empty, or turned it further
+    rotation = rotation * np.sign((rotation * matrix[:3, :3]).sum(axis=0))
+    return rotation, float(matrix[2, 3])
+
+
+def _contains(region, event):
+    return 0 <= event.mouse_x - region.x < region.width and 0 <= event.mouse_y - region.y < region.height
