@@ -72,16 +72,19 @@ class View:
         """Whether rays spread from one point."""
         return bool(self.ray_x.any())
 
+    def rays_at(self, xy):
+        """Starts [m] and directions of the rays, (..., 3) each, at (..., 2) [px] as in `directions_at`."""
+        x, y = np.moveaxis(2 * np.asarray(xy, np.float64) / self.size - 1, -1, 0)[..., None]
+        return self.eye + x * self.eye_x + y * self.eye_y, self.ray + x * self.ray_x + y * self.ray_y
+
     def directions_at(self, xy):
         """Directions (..., 3) in the panorama frame, not of unit length, that a view shows at (..., 2) [px].
 
         Pixels count from the lower left corner; their centres are at + 1/2.
         """
-        x, y = np.moveaxis(2 * np.asarray(xy, np.float64) / self.size - 1, -1, 0)[..., None]
-        ray = self.ray + x * self.ray_x + y * self.ray_y
+        start, ray = self.rays_at(xy)
         if self.is_perspective:
             return ray
-        start = self.eye + x * self.eye_x + y * self.eye_y
         sinking = self.ray @ self.up
         if abs(sinking) < PARALLEL:
             return np.broadcast_to(self.ray, start.shape)

@@ -33,6 +33,17 @@ class ViewCanvas:
         """Where image points (..., 2) are shown (..., 2) [region px]; NaN where they are not."""
         return self.view.pixels_of(direction_from_uv(uv)) - 0.5
 
+    def ray_at(self, xy):
+        """The ray that is seen at (2,) [region px]: its start [m] and direction, (3,) of the panorama frame.
+
+        In a view from beside the panorama it starts there, so it isn't the ray of the picture shown.
+        """
+        return self.view.rays_at(np.asarray(xy, np.float64) + 0.5)
+
+    def curve_of(self, points):
+        """A curve's pixels (n, 2) through points (n, 3) of the panorama frame [m]; NaN breaks it."""
+        return self.view.pixels_of_points(points) - 0.5
+
 
 @dataclass(frozen=True, eq=False)
 class ImageCanvas:
@@ -50,6 +61,17 @@ class ImageCanvas:
         """Where image points (..., 2) are shown (..., 2) [region px]."""
         u, v = np.moveaxis(np.asarray(uv, np.float64), -1, 0)
         return np.stack([u, 1 - v], axis=-1) * self.size + self.corner - 0.5
+
+    def ray_at(self, xy):
+        """The ray (start [m], direction), (3,) of the panorama frame, at (2,) [region px]; None outside."""
+        uv = self.uv_at(xy)
+        return None if uv is None else (np.zeros(3), direction_from_uv(uv))
+
+    def curve_of(self, points):
+        """A curve's pixels (m, 2) through points (n, 3) of the panorama frame [m]; NaN at the seam."""
+        uv = uv_from_direction(points)
+        cuts = np.flatnonzero(np.abs(np.diff(uv[:, 0])) > 0.5) + 1
+        return np.insert(self.pixels_of(uv), cuts, np.nan, axis=0)
 
 
 def canvas_of(context, area, region) -> ViewCanvas | ImageCanvas | None:

@@ -33,6 +33,7 @@ class Tool:
     def __init__(self):
         """Nothing is done yet."""
         self.canvas, self.xy = None, None  # where the mouse is: for the magnifier
+        self.region = 0  # address of the region under the mouse, to know it while it draws
         self.dragged = None  # what the mouse holds; until it lets go, the tool hears of it everywhere
         self.takes_numbers = False  # while it does, the number pad does not turn the view
         self.problem = ""  # what is wrong with what is there so far, to be drawn beside it
@@ -114,6 +115,7 @@ class ToolOperator(Reporting):
             answer = RUNNING
         else:
             self.tool.canvas, self.tool.xy = on, xy
+            self.tool.region = under[2].as_pointer() if under else 0
             answer = self.tool.handle(on, xy, event)
         canvas.redraw(context)
         return self._answered(context, answer)
