@@ -27,7 +27,7 @@ ROUND = 0.3
 """A region whose spread across is less than this share of that along is halved."""
 WIDEST = 0.35
 """Radius of the widest disc [rad]: a wider lamp is halved."""
-QUIET = 0.1
+QUIET = 0.35
 """Noise of the residual up to which the renderer gains by the lights (`quiet.noise`)."""
 MOST = 32
 """No map needs more; further lamps stay in the quiet map."""
