@@ -1,0 +1,48 @@
+"""Operators on how a 3D view looks at the panorama."""
+
+import bpy
+
+from .canvas import calibration_of
+from .reporting import Reporting, possible
+
+ARM = 1e-4
+"""What a view turns around lies so far before its eye [m]: turning it turns the head."""
+
+
+class PANORAMA_OT_look_around(Reporting, bpy.types.Operator):
+    """Look from where the panorama was captured. Turning the view then turns the head, and things stay on
+    their picture; zoom and pan leave the place"""
+
+    bl_idname = "panorama.look_around"
+    bl_label = "Look Around"
+    bl_options = {"REGISTER"}  # a view is no part of the file's undo
+
+    @classmethod
+    def poll(cls, context):
+        """There must be a panorama, and a view that may turn."""
+        return possible(cls, _look_missing(context))
+
+    def work(self, context):
+        """Move the eye, and keep the direction and the lens."""
+        view = context.space_data.region_3d
+        x, y, z = _origin(context.scene)
+        view.view_perspective = "PERSP"
+        view.view_location, view.view_distance = (x, y, z), ARM
+        return f"The view is {z:.2f} m above the floor, where the panorama was captured"
+
+
+def _origin(scene):
+    """Where the panorama was captured (3,) [m]."""
+    return 0.0, 0.0, calibration_of(scene)[1]
+
+
+def _look_missing(context):
+    scene, space = context.scene, context.space_data
+    if scene.panorama_set.image is None and scene.panorama_place.image is None:
+        return "Open a panorama first"
+    if space is None or space.type != "VIEW_3D":
+        return "Only in a 3D View"
+    return "This view's rotation is locked" if space.region_3d.lock_rotation else ""
+
+
+classes = (PANORAMA_OT_look_around,)

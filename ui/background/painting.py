@@ -1,0 +1,119 @@
+"""Puts the panorama behind everything that Blender has drawn in a 3D view, between its two layers.
+
+Blender draws a 3D view in two layers: the scene, scene-linear, and over it the overlays, whose theme colour
+fills what the scene leaves empty. The panorama belongs into the scene's layer: there it gets the display
+transform that objects get, and wires, outlines, grid and text stay over it. Blender hands that layer to draw
+callbacks before it clears it, so the callback before the scene only remembers it, and the one after paints.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+from mathutils import Color, Matrix
+
+from ...ibl_toolkit.views import View
+from ...operators.canvas import calibration_of
+from . import shader, theme
+
+SHOWN_IN = ("WIREFRAME", "SOLID", "MATERIAL")
+"""Shading modes; in the rendered one the World shows the panorama."""
+EMPTY, FILLED, ANYWHERE = "LESS_EQUAL", "GREATER", "NONE"
+"""Depth tests of something at the far plane: where nothing is before it, where something is, no test."""
+ROUNDING = 0.005
+"""Beyond the rounding to 8 bits, and the noise, that Blender's overlays add to the theme's colour."""
+COVER = np.array([(-1, -1, 1), (3, -1, 1), (-1, 3, 1)], np.float32)
+_scene_layer = None
+
+
+def remember_scene_layer():
+    """Before the scene: its framebuffer is the one in use."""
+    global _scene_layer
+    _scene_layer = gpu.state.active_framebuffer_get()
+
+
+def paint():
+    """After the scene, over its overlays: put the panorama behind."""
+    layer = forget_scene_layer()
+    context = bpy.context
+    image = image_of(context.scene)
+    if layer is None or image is None or not is_shown(context.scene, context.space_data):
+        return
+    view = view_of(context.scene, context.region, context.region_data)
+    texture = gpu.texture.from_image(image)
+    gain = 2.0**context.scene.panorama_view.exposure
+    fill = theme.background_of(context.space_data, context.scene, context.preferences.themes)
+    with _state_given_back():
+        for where, blend, share in passes(context.space_data.shading, context.scene.panorama_view.opacity):
+            gpu.state.depth_test_set(where)
+            gpu.state.blend_set(blend)
+            with layer.bind():
+                shader.draw(view, texture, gain, share)
+            _take_away(fill, share)
+
+
+def forget_scene_layer() -> gpu.types.GPUFrameBuffer | None:
+    """What was remembered, once."""
+    global _scene_layer
+    layer, _scene_layer = _scene_layer, None
+    return layer
+
+
+def image_of(scene) -> bpy.types.Image | None:
+    """The scene's panorama, if it has one that could be read."""
+    image = scene.panorama_set.image or scene.panorama_place.image
+    return image if image is not None and all(image.size) else None
+
+
+def is_shown(scene, space) -> bool:
+    """Whether a 3D view is to show the panorama behind its objects."""
+    return scene.panorama_view.show_background and space.shading.type in SHOWN_IN
+
+
+def view_of(scene, region, region_data) -> View:
+    """The View of a 3D view's region."""
+    matrices = region_data.window_matrix, region_data.view_matrix
+    return View.from_matrices(*matrices, *calibration_of(scene), (region.width, region.height))
+
+
+def passes(shading, opacity: float) -> list[tuple[str, str, float]]:
+    """How often the panorama is drawn: where, with which blending, and with which share of it.
+
+    Wires have nothing behind them but the theme's colour, with which the panorama is mixed. Behind what X-ray
+    makes translucent lies the share of it that one surface lets pass.
+    """
+    if shading.type == "WIREFRAME":
+        return [(ANYWHERE, "NONE", opacity)]
+    behind = [(EMPTY, "NONE", 1.0)]
+    if shading.type == "SOLID" and shading.show_xray and shading.xray_alpha < 1:
+        behind.append((FILLED, "ADDITIVE_PREMULT", 1.0 - shading.xray_alpha))
+    return behind
+
+
+def _take_away(fill, share):
+    """Subtract a share of the theme's colour from the overlays, which are the framebuffer in use."""
+    plain = gpu.shader.from_builtin("UNIFORM_COLOR")
+    gpu.state.blend_set("SUBTRACT")
+    excess = Color([share * (component + ROUNDING) for component in fill])
+    plain.uniform_float("color", (*excess.from_scene_linear_to_srgb(), 0.0))
+    with gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
+        gpu.matrix.load_identity()
+        gpu.matrix.load_projection_matrix(Matrix.Identity(4))
+        batch_for_shader(plain, "TRIS", {"pos": COVER}).draw(plain)
+
+
+@contextmanager
+def _state_given_back():
+    blend, test = gpu.state.blend_get(), gpu.state.depth_test_get()
+    written = gpu.state.depth_mask_get()
+    gpu.state.depth_mask_set(False)
+    try:
+        yield
+    finally:
+        gpu.state.blend_set(blend)
+        gpu.state.depth_test_set(test)
+        gpu.state.depth_mask_set(written)
