@@ -103,6 +103,8 @@ class ToolOperator(Reporting):
         """Hand an event to the tool, and do what it answers."""
         if self.tool is not _active:
             return self._end(context, {"CANCELLED"})
+        if event.type.startswith("TIMER"):  # of long work, which goes on beside the tool
+            return {"PASS_THROUGH"}
         if self._is_navigation(event):
             canvas.redraw(context)
             return {"PASS_THROUGH"}
