@@ -41,9 +41,7 @@ class PANORAMA_OT_add_shape(Reporting, bpy.types.Operator):
     def work(self, context):
         """Append a shape whose points are still to be set; walls stand over the active flat shape."""
         state = context.scene.panorama_set
-        taken = {shape.name for shape in state.shapes}
-        names = (self.kind if n == 1 else f"{self.kind} {n}" for n in range(1, len(taken) + 2))
-        shape = conversion.add_shape(state, self.kind, next(name for name in names if name not in taken))
+        shape = conversion.add_shape(state, self.kind, conversion.free_name(state, self.kind))
         if self.kind == "walls":
             flat = [s.name for s in state.shapes if s.kind in ("polygon", "rectangle", "square", "circle")]
             shape.of, shape.ceiling, shape.role = next(iter(flat), ""), True, "ENVIRONMENT"

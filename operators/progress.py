@@ -38,6 +38,15 @@ def calibration_missing(scene) -> str:
     return "" if done else "Calibrate first"
 
 
+def drawing_missing(scene) -> str:
+    """What must be there before a shape can be drawn on the floor and built."""
+    if calibration_missing(scene) or picks_missing(scene):
+        return calibration_missing(scene) or picks_missing(scene)
+    if scene.panorama_set.calibration_is_old:
+        return "The picks have changed: calibrate again"
+    return "" if scene.panorama_set.image else "The panorama's image is gone: open it again"
+
+
 def shapes_missing(scene) -> str:
     """What step 3 needs before it can be built."""
     if picks_missing(scene):
