@@ -62,7 +62,7 @@ def state_from_set(state, panorama_set: PanoramaSet):
     _fill_picks(state, panorama_set.calibration)
     state.shapes.clear()
     for shape in panorama_set.shapes:
-        _fill_shape(state.shapes.add(), shape)
+        append_shape(state, shape)
     state.active_pick = state.active_shape = 0
     state.calibration_is_old = state.shapes_are_old = False
 
@@ -149,6 +149,13 @@ def add_pick(state, kind, points=None):
     return pick
 
 
+def free_name(state, wanted) -> str:
+    """Return a name that no shape has: as wanted, or with a number."""
+    taken = {shape.name for shape in state.shapes}
+    names = (wanted if n == 1 else f"{wanted} {n}" for n in range(1, len(taken) + 2))
+    return next(name for name in names if name not in taken)
+
+
 def add_shape(state, kind, name):
     """Append a shape whose points are still to be picked."""
     shape = state.shapes.add()
@@ -157,7 +164,9 @@ def add_shape(state, kind, name):
     return shape
 
 
-def _fill_shape(item, shape):
+def append_shape(state, shape):
+    """Append a shape of a set."""
+    item = state.shapes.add()
     item.name, item.kind, item.role, item.of = shape.name, shape.kind, shape.role, shape.of or ""
     _add_points(item.points, 0, () if shape.points is None else shape.points)
     item.has_height = shape.height is not None

@@ -44,6 +44,28 @@ def build_scene(scene):
     return _solve(scene, None)
 
 
+def add_shapes(scene, shapes):
+    """Append shapes to the set and build them, beside those built already -> Calibration.
+
+    Raises ValueError or OSError where that fails; the set is then as it was.
+    """
+    state = scene.panorama_set
+    before = len(state.shapes), state.shapes_are_old
+    for shape in shapes:
+        conversion.append_shape(state, shape)
+    names = {name for shape in shapes for name in (shape.name, shape.of) if name}
+    try:
+        calibration = _solve(scene, _built_names(scene) | names)
+    except (ValueError, OSError):
+        for index in reversed(range(before[0], len(state.shapes))):
+            state.shapes.remove(index)
+        state.shapes_are_old = before[1]
+        raise
+    state.shapes_are_old = not all(shape.is_built for shape in state.shapes)
+    state.active_shape = len(state.shapes) - 1
+    return calibration
+
+
 def follow_camera_height(scene):
     """Scale the place with the camera height; what is wrong with it is kept for the panel to show."""
     state = scene.panorama_set
