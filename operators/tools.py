@@ -81,7 +81,15 @@ class ToolOperator(Reporting):
     Both may raise ValueError: the first refuses, the second says what is wrong and the tool goes on.
     """
 
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}  # not REGISTER: there is no adjusting of what the mouse did
+    tool = None
+
+    def execute(self, context):
+        """Apply what was picked or drawn."""
+        if self.tool is None:
+            self.report({"ERROR"}, "It works with the mouse: start it from its button or menu")
+            return {"CANCELLED"}
+        return super().execute(context)
 
     def invoke(self, context, event):
         """Begin."""
@@ -112,7 +120,7 @@ class ToolOperator(Reporting):
         on, xy = (under[0], under[3]) if under else (None, None)
         if on is None and event.type in MOUSE and self.tool.dragged is None:
             return {"PASS_THROUGH"}
-        if event.type == "Z" and event.ctrl and event.value == "PRESS":
+        if event.type == "Z" and event.ctrl and event.value in {"PRESS", "DOUBLE_CLICK"}:
             self.tool.undo(redo=event.shift)
             answer = RUNNING
         else:
