@@ -32,7 +32,8 @@ class Adjustment:
     world_from_panorama (3, 3); azimuths (families,) of the rectangles, [0] = 0; corrections (n, 2);
     multipliers (m,) and their cofactors (m, m); normal (p, p): normal matrix of the unknowns (turns about
     world x, y and, if anything gives it, z; then the further azimuths); sensitivity (p, n, 2): change
-    of the unknowns per error of each click; converged: whether it is a minimum.
+    of the unknowns per error of each click; by_click (m, n, 2): the conditions' derivatives by the clicks;
+    converged: whether it is a minimum.
     """
 
     world_from_panorama: np.ndarray
@@ -42,6 +43,7 @@ class Adjustment:
     multiplier_cofactors: np.ndarray
     normal: np.ndarray
     sensitivity: np.ndarray
+    by_click: np.ndarray
     converged: bool
 
     @property
@@ -93,7 +95,8 @@ def adjust(clicks, conditions, world_from_panorama, azimuths, most_steps=MOST_ST
     gain = weight @ by_unknown @ inverse
     sensitivity = -(gain.T @ by_click).reshape(len(normal), -1, 2)
     cofactors = weight - gain @ by_unknown.T @ weight
-    return Adjustment(rotation, azimuths, corrections, multipliers, cofactors, normal, sensitivity, converged)
+    statistics = multipliers, cofactors, normal, sensitivity, by_click.reshape(len(value), -1, 2)
+    return Adjustment(rotation, azimuths, corrections, *statistics, converged)
 
 
 def invert_symmetric(matrix):

@@ -94,6 +94,11 @@ def calibrate(picks, image_size):
     >>> result.tilt_deg < 0.1, side.round(2).tolist()
     (True, [1.5, 0.0])
     """
+    return solve(picks, image_size)[0]
+
+
+def solve(picks, image_size):
+    """What `calibrate` returns, with the Clicks and the Adjustment that it comes from."""
     if (picks.camera_height is None) == (picks.length is None):
         given = "neither" if picks.length is None else "both"
         raise CalibrationError(f"scale: exactly one of camera_height and length must be given, got {given}")
@@ -112,7 +117,7 @@ def calibrate(picks, image_size):
     height = picks.camera_height
     if height is None:
         height = picks.length.metres / floor_length(clicks, clicks.length, rotation)
-    return Calibration(
+    calibration = Calibration(
         world_from_panorama=_read_only(rotation),
         camera_height=float(height),
         tilt_deg=float(np.degrees(angle_between(rotation[2], np.array([0.0, 0.0, 1.0])))),
@@ -127,6 +132,7 @@ def calibrate(picks, image_size):
             *poor,
         ),
     )
+    return calibration, clicks, adjustment
 
 
 def _residual_deg(clicks, conditions, adjustment):

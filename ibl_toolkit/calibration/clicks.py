@@ -36,11 +36,13 @@ class Line:
 class Clicks:
     """Every distinct click once: one that serves two purposes has one error, not two.
 
-    directions (n, 3): unit, panorama frame. tangents (n, 3, 2) [rad]: how the direction moves, to first
-    order, when the click errs by half a pixel sideways and up or down; so an error in these coordinates
-    has unit variance. names: one role of each click. length: the two clicks of the known length or None.
+    uv (n, 2): u in [0, 1). directions (n, 3): unit, panorama frame. tangents (n, 3, 2) [rad]: how the
+    direction moves, to first order, when the click errs by half a pixel sideways and up or down; so an error
+    in these coordinates has unit variance. names: one role of each click. length: the two clicks of the
+    known length or None.
     """
 
+    uv: np.ndarray
     directions: np.ndarray
     tangents: np.ndarray
     names: tuple[str, ...]
@@ -99,9 +101,10 @@ def collect_clicks(picks, image_size):
     for number, pair in enumerate(picks.verticals, start=1):
         lines.append(Line(table.add(pair, f"vertical {number}"), "Z", f"vertical {number}"))
     length = table.add(picks.length.points, "length") if picks.length else None
-    directions = direction_from_uv(np.array(list(table.index)).reshape(-1, 2))
+    uv = np.array(list(table.index)).reshape(-1, 2)
+    directions = direction_from_uv(uv)
     tangents = click_tangents(directions, width, height)
-    return Clicks(directions, tangents, tuple(table.names), tuple(quads), tuple(lines), length)
+    return Clicks(uv, directions, tangents, tuple(table.names), tuple(quads), tuple(lines), length)
 
 
 def _checked_size(image_size):
