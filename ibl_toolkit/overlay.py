@@ -53,10 +53,7 @@ def draw_axis_planes(picture, world_from_panorama, thickness=1):
 
 def draw_segment(picture, first, second, colour, thickness=2, depth=None):
     """Draw the straight line between two points (3,) of the panorama frame [m]; neither may be the origin."""
-    angle = np.arccos(np.clip(first @ second / np.linalg.norm(first) / np.linalg.norm(second), -1, 1))
-    steps = max(int(np.ceil(np.degrees(angle) / STEP_DEG)), 1)
-    points = _evenly_seen(np.asarray(first, float), np.asarray(second, float), steps)
-    for run in _visible_runs(points, depth):
+    for run in _visible_runs(segment_points(first, second), depth):
         draw_curve(picture, run, colour, thickness)
 
 
@@ -80,11 +77,15 @@ def unwrapped(uv):
     return np.column_stack([np.unwrap(uv[:, 0], period=1.0), uv[:, 1]])
 
 
-def _evenly_seen(first, second, steps):
-    """Points (steps + 1, 3) on a segment, evenly spaced in the angle at which the origin sees them."""
+def segment_points(first, second):
+    """Points (n, 3) on a segment between two (3,), in even steps of at most STEP_DEG seen from the origin.
+
+    Neither may be the origin.
+    """
+    first, second = np.asarray(first, float), np.asarray(second, float)
     near, far = np.linalg.norm(first), np.linalg.norm(second)
-    cosine = np.clip(first @ second / (near * far), -1, 1)
-    angle = np.arccos(cosine)
+    angle = np.arccos(np.clip(first @ second / (near * far), -1, 1))
+    steps = max(int(np.ceil(np.degrees(angle) / STEP_DEG)), 1)
     if np.sin(angle) < 1e-9:
         share = np.linspace(0, 1, steps + 1)
     else:
