@@ -1,5 +1,71 @@
-"""To be written: drawn over the panorama."""
+"""Shapes over the panorama: the one being drawn, with its sizes, and in Image Editors the built ones."""
+
+import numpy as np
+
+from ..ibl_toolkit.drawing import sizes, wireframe
+from ..ibl_toolkit.drawn_shape import on_floor
+from ..ibl_toolkit.overlay import ROLE_COLOURS, segment_points
+from ..operators.canvas import ImageCanvas
+from ..operators.draw_tool import DrawTool
+from ..operators.shape_lines import built_lines
+from ..operators.tools import active_tool
+from . import drawing
+
+COLOURS = {role: tuple(value / 255 for value in colour) for role, colour in ROLE_COLOURS.items()}
+BUILT_ALPHA = 0.55
+WRONG = (1, 0.45, 0.4, 1)
+BESIDE = np.array([16.0, 12.0])
+"""Where text stands from what it is about [px of a plain screen]."""
 
 
 def draw(context, canvas):
-    """Nothing yet."""
+    """Draw the shapes in a region that shows the panorama."""
+    if isinstance(canvas, ImageCanvas) and context.space_data.overlay.show_overlays:
+        for role, segments in built_lines(context.scene).items():
+            drawing.lines(_curves(canvas, segments), (*COLOURS[role], BUILT_ALPHA), 1)
+    tool = active_tool()
+    if isinstance(tool, DrawTool):
+        _draw_tool(canvas, tool)
+        if tool.region == context.region.as_pointer():
+            _draw_at_mouse(tool)
+
+
+def _draw_tool(canvas, tool):
+    shape = tool.shape
+    points, base, height, _ = tool.preview()
+    colour = (*COLOURS[shape.role], 1)
+    lines = [on_floor(points)] if base is None else wireframe(base.outline, height)
+    segments = [pair for line in lines for pair in np.stack([line[:-1], line[1:]], axis=1)]
+    drawing.lines(_curves(canvas, shape.stand.from_origin(segments)), colour, 2)
+    for point in shape.points:
+        drawing.dots(_pixels(canvas, shape, (*point, 0)), colour)
+    for middle, length in sizes(shape.flat, points, base):
+        _label(_pixels(canvas, shape, (*middle, 0)), tool.lengths.text(length))
+    if height is not None:
+        edge = tool.top[:2] if tool.top is not None else base.outline[0]
+        _label(_pixels(canvas, shape, (*edge, height)), tool.lengths.text(height))
+
+
+def _draw_at_mouse(tool):
+    problem = tool.problem or tool.preview()[3]
+    at = tool.xy + BESIDE * drawing.scale()
+    if tool.typed:
+        drawing.text(at, tool.typed, (1, 1, 1, 1), 15)
+        at = at + np.array([0, 20]) * drawing.scale()
+    if problem:
+        drawing.text(at, problem, WRONG)
+
+
+def _label(pixels, string):
+    drawing.text(pixels + BESIDE / 2 * drawing.scale(), string)
+
+
+def _pixels(canvas, shape, point):
+    return canvas.curve_of(shape.stand.from_origin(np.array([point], float)))[0]
+
+
+def _curves(canvas, segments):
+    """Pixels (n, 2) of straight segments (m, 2, 3) of the panorama frame [m]; NaN between them."""
+    gap = np.full((1, 2), np.nan)
+    curves = [part for ends in segments for part in (canvas.curve_of(segment_points(*ends)), gap)]
+    return np.concatenate(curves) if curves else gap

@@ -1,0 +1,31 @@
+"""Buttons and a menu that draw shapes with the mouse, for sidebars and for Blender's Add menu."""
+
+import bpy
+
+from ..operators.draw_shape import DRAWN_KINDS
+from .lists import SHAPE_ICONS
+
+ICONS = {**SHAPE_ICONS, "room": "HOME"}
+
+
+class PANORAMA_MT_draw_shape(bpy.types.Menu):
+    """The kinds of shapes that can be drawn."""
+
+    bl_label = "Draw Shape"
+
+    def draw(self, context):
+        """The room first."""
+        self.layout.operator_context = "INVOKE_REGION_WIN"
+        for kind, name, _ in DRAWN_KINDS:
+            icon = ICONS.get(kind, "MESH_PLANE")
+            self.layout.operator("panorama.draw_shape", text=name, icon=icon).kind = kind
+
+
+def draw_buttons(layout):
+    """A button for the room, and the menu."""
+    row = layout.row(align=True)
+    row.operator("panorama.draw_shape", text="Draw Room", icon=ICONS["room"]).kind = "room"
+    row.menu("PANORAMA_MT_draw_shape", text="Draw Shape", icon="GREASEPENCIL")
+
+
+classes = (PANORAMA_MT_draw_shape,)
