@@ -5,6 +5,7 @@ import bpy
 from . import (
     calibration,
     clipped_light,
+    draw_shape,
     light,
     picking,
     pictures,
@@ -16,7 +17,7 @@ from . import (
     view_properties,
 )
 
-OPERATORS = (set_files, picking, calibration, probes, surfaces, light, clipped_light, pictures)
+OPERATORS = (set_files, picking, calibration, draw_shape, probes, surfaces, light, clipped_light, pictures)
 
 
 def register():

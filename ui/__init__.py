@@ -2,9 +2,9 @@
 
 import bpy
 
-from . import image_editor, lists, overlays, picture_panels, place_panels
+from . import image_editor, lists, overlays, picture_panels, place_panels, shape_buttons
 
-PANELS = (lists, place_panels, picture_panels, image_editor)
+PANELS = (lists, shape_buttons, place_panels, picture_panels, image_editor)
 
 
 def register():

@@ -3,6 +3,7 @@
 import bpy
 
 from .lists import draw_picks, draw_shapes
+from .shape_buttons import draw_buttons
 from .texts import paragraph
 
 
@@ -42,7 +43,8 @@ class PANORAMA_PT_shape_points(_InImageEditor, bpy.types.Panel):
     bl_label = "Shapes"
 
     def draw(self, context):
-        """The list, with buttons for points."""
+        """Drawn with the mouse, or the list, with buttons for points."""
+        draw_buttons(self.layout)
         draw_shapes(self.layout, context, context.scene.panorama_set, from_cursor=True)
 
 

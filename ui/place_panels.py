@@ -6,6 +6,7 @@ import bpy
 
 from ..operators import progress
 from .lists import draw_picks, draw_shapes
+from .shape_buttons import draw_buttons
 from .steps import InSidebar, Step
 from .texts import figure, paragraph
 
@@ -111,7 +112,8 @@ class PANORAMA_PT_shapes(Step, bpy.types.Panel):
     def draw(self, context):
         """The button, and how it went."""
         state = context.scene.panorama_set
-        self.say(context, progress.shapes_missing(context.scene))
+        self.say(context, progress.drawing_missing(context.scene) or progress.shapes_missing(context.scene))
+        draw_buttons(self.layout)
         self.layout.operator("panorama.build", icon="MESH_CUBE")
         built = [shape for shape in state.shapes if shape.is_built]
         if built:
