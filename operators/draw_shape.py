@@ -48,7 +48,7 @@ class PANORAMA_OT_draw_shape(ToolOperator, bpy.types.Operator):
         stand = Stand(*calibration_of(scene))
         over = _over(scene.panorama_set, stand, self.of) if self.kind == "walls" else (None, None)
         shape = DrawnShape(self.kind, stand, over)
-        return DrawTool(shape, Lengths.of_scene(scene), context.preferences.system.ui_scale)
+        return DrawTool(shape, Lengths.of_scene(scene), context.preferences.system.ui_scale or 1)
 
     def work(self, context):
         """Add what was drawn to the set and build it. Where that fails, the tool goes on and says why."""

@@ -57,7 +57,7 @@ def test_a_room_is_built_with_its_roles(empty_room):
     hand = drawing(bpy, "room")
     hand.click((-2, -2), (2, -2), (2, 2), (-2, 2), (-2, -2))
     hand.type("2.5")
-    assert hand.enter() == "CONFIRM"
+    assert hand.enter() == "CONFIRM", hand.tool.problem
     assert hand.apply() == "Built floor and walls"
     floor, walls = (bpy.data.objects[name] for name in ("floor", "walls"))
     assert (floor.panorama_role, walls.panorama_role) == ("SUPPORT", "ENVIRONMENT")
