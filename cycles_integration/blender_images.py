@@ -23,9 +23,11 @@ def image_from_array(name: str, array: np.ndarray) -> bpy.types.Image:
 
 
 def replace_image(old: bpy.types.Image | None, name: str, array: np.ndarray | None) -> bpy.types.Image | None:
-    """Drop ``old`` and store ``array`` in its stead, if there is one."""
+    """Drop ``old``, unless another scene uses it too, and store ``array`` in its stead, if there is one."""
     if old is not None:
-        bpy.data.images.remove(old)
+        users = bpy.data.user_map(subset={old})[old]
+        if sum(isinstance(user, bpy.types.Scene) for user in users) < 2:  # else a copy of the scene has it
+            bpy.data.images.remove(old)
     return None if array is None else image_from_array(name, array)
 
 

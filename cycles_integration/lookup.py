@@ -45,7 +45,8 @@ def build_lookup(place: Place) -> bpy.types.NodeTree:
 
 def lookup(place: Place, tree: bpy.types.NodeTree, output: str) -> bpy.types.NodeSocket:
     """Use the look-up group in a material; returns the wanted output."""
-    return add(tree, "ShaderNodeGroup", node_tree=bpy.data.node_groups[own_name(place, NAME)]).outputs[output]
+    group = bpy.data.node_groups.get(own_name(place, NAME)) or build_lookup(place)
+    return add(tree, "ShaderNodeGroup", node_tree=group).outputs[output]
 
 
 def environment_texture(tree, image, direction) -> bpy.types.NodeSocket:

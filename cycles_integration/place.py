@@ -18,39 +18,55 @@ CATCHER = "Panorama Catcher"
 backplate and for the artist's viewport."""
 
 
+def _pointer(kind, description):
+    return bpy.props.PointerProperty(type=kind, description=description)
+
+
 class Place(bpy.types.PropertyGroup):
     """What a scene knows of its captured place; everything here is derived and can be made again."""
 
-    collection: bpy.props.PointerProperty(type=bpy.types.Collection)
-    surfaces: bpy.props.PointerProperty(type=bpy.types.Collection)
-    support: bpy.props.PointerProperty(type=bpy.types.Collection)
-    environment: bpy.props.PointerProperty(type=bpy.types.Collection)
-    lights: bpy.props.PointerProperty(type=bpy.types.Collection)
-    suns: bpy.props.PointerProperty(type=bpy.types.Collection)
-    catchers: bpy.props.PointerProperty(type=bpy.types.Collection)
-    origin: bpy.props.PointerProperty(type=bpy.types.Object)
-    catcher: bpy.props.PointerProperty(type=bpy.types.Object)
-    image: bpy.props.PointerProperty(type=bpy.types.Image)
-    residual: bpy.props.PointerProperty(type=bpy.types.Image)
-    irradiance: bpy.props.PointerProperty(type=bpy.types.Image)
-    gloss: bpy.props.PointerProperty(type=bpy.types.Image)
-    sky: bpy.props.PointerProperty(type=bpy.types.Image)
-    sun_residual: bpy.props.PointerProperty(type=bpy.types.Image)
-    sun_quiet: bpy.props.PointerProperty(type=bpy.types.Image)
-    plate: bpy.props.PointerProperty(type=bpy.types.Image)
+    key: bpy.props.StringProperty(
+        description="What this place's own data-blocks are named after", options={"HIDDEN"}
+    )
+    collection: _pointer(bpy.types.Collection, "All that the panorama made in this scene")
+    surfaces: _pointer(bpy.types.Collection, "The real surfaces")
+    support: _pointer(bpy.types.Collection, "Real surfaces that receive shadows and reflections")
+    environment: _pointer(bpy.types.Collection, "Real surfaces that only show and light")
+    lights: _pointer(bpy.types.Collection, "The photograph's lamps on the surfaces")
+    suns: _pointer(bpy.types.Collection, "The photograph's lamps at infinity")
+    catchers: _pointer(bpy.types.Collection, "The surfaces once more, as shadow catchers")
+    origin: _pointer(bpy.types.Object, "Where the panorama was captured, and how it was turned")
+    catcher: _pointer(bpy.types.Object, "What instances the surfaces as shadow catchers")
+    image: _pointer(bpy.types.Image, "The photograph")
+    residual: _pointer(bpy.types.Image, "The photograph without its lamps on the surfaces")
+    irradiance: _pointer(bpy.types.Image, "The light that falls on the real surfaces")
+    gloss: _pointer(bpy.types.Image, "What the photograph shows mirrored in glossy surfaces")
+    sky: _pointer(bpy.types.Image, "The part of the photograph that no surface covers")
+    sun_residual: _pointer(bpy.types.Image, "The photograph without its lamps at infinity")
+    sun_quiet: _pointer(bpy.types.Image, "The same, of low resolution")
+    plate: _pointer(bpy.types.Image, "The photograph in the size of a panorama picture")
 
 
 def place_of(scene: bpy.types.Scene) -> Place:
     """Return the scene's place; ValueError where it has none."""
     place = scene.panorama_place
-    if place.image is None or place.origin is None:
+    if place.image is None or not is_here(place):
         raise ValueError(f"scene {scene.name!r} has no panorama: calibrate one first")
     return place
+
+
+def is_here(place: Place) -> bool:
+    """Whether a place stands in its scene: one made with the settings of another only knows of its place."""
+    scene = place.id_data
+    return place.origin is not None and place.collection in scene.collection.children_recursive
 
 
 def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
     """Give the scene a panorama (or another one) and set its calibration."""
     place = scene.panorama_place
+    if not is_here(place):
+        for pointer in place.bl_rna.properties:
+            place.property_unset(pointer.identifier)
     place.image = blender_images.load_radiance(image_path)
     if place.collection is None:
         place.collection = _child_collection(scene.collection, "Panorama")
@@ -70,8 +86,24 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
 
 
 def own_name(place: Place, name: str) -> str:
-    """Return the name of a data-block of this place alone: a file may hold several places."""
-    return f"{name} ({place.id_data.name})"
+    """Return the name of a data-block of this place alone.
+
+    A file may hold several places, and scenes are renamed and copied: so the place keeps the name that its
+    scene had first, and a scene made as a copy takes another one.
+    """
+    scene = place.id_data
+    others = [other for other in bpy.data.scenes if other != scene]
+    taken = {other.panorama_place.key for other in others if not _is_copy_of(scene, other)}
+    if not place.key or place.key in taken:
+        names = (scene.name if n == 1 else f"{scene.name} {n}" for n in range(1, len(others) + 2))
+        every = {other.panorama_place.key for other in others}
+        place.key = next(key for key in names if key not in every)
+    return f"{name} ({place.key})"
+
+
+def _is_copy_of(scene, other):
+    """Whether ``other`` is the copy if one is made of the other: Blender lengthens the name."""
+    return (len(other.name), other.name) > (len(scene.name), scene.name)
 
 
 def set_calibration(place: Place, world_from_panorama: np.ndarray, camera_height: float):
@@ -84,7 +116,9 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
     """Move every real mesh into the collection of its role, and new objects out of there.
 
     View layers leave out whole collections, never single objects; so roles have collections of their own.
+    Raises ValueError, and moves nothing, where a real mesh is linked from another file.
     """
+    roles.refuse_linked_surfaces(scene)
     collections = {roles.SUPPORT: place.support, roles.ENVIRONMENT: place.environment}
     for thing in roles.real_objects(scene):
         _move(thing, collections[thing.panorama_role])
@@ -92,11 +126,7 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
     for thing in list(scene.objects):
         if thing.type != "MESH" or thing.panorama_role == roles.SYNTHETIC:
             stray = set(thing.users_collection) <= ours | {scene.collection}
-            if (
-                stray
-                and thing not in (place.origin, place.catcher)
-                and thing.name not in place.suns.objects
-            ):
+            if stray and thing not in (place.origin, place.catcher) and thing.name not in place.suns.objects:
                 _move(thing, _synthetic_collection(scene))
 
 
@@ -128,7 +158,7 @@ def _child_collection(parent, name):
 def register():
     """Give every scene its place."""
     bpy.utils.register_class(Place)
-    bpy.types.Scene.panorama_place = bpy.props.PointerProperty(type=Place)
+    bpy.types.Scene.panorama_place = _pointer(Place, "The captured place as it stands in this scene")
 
 
 def unregister():

@@ -33,23 +33,50 @@ def with_role(scene: bpy.types.Scene, role: str) -> list[bpy.types.Object]:
     return [o for o in real_objects(scene) if o.panorama_role == role]
 
 
+def refuse_linked_surfaces(scene: bpy.types.Scene):
+    """Raise ValueError naming real objects that cannot be given the photograph: they or their meshes are
+    linked from another file."""
+    linked = [o for o in real_objects(scene) if not (is_editable(o) and is_editable(o.data))]
+    if linked:
+        names = ", ".join(f"'{thing.name}'" for thing in linked)
+        raise ValueError(
+            f"{names}: linked from another file, so the photograph cannot be put on: make object and mesh "
+            "local (Object > Relations > Make Local), or the object synthetic"
+        )
+
+
+def is_editable(thing: bpy.types.ID) -> bool:
+    """Whether a data-block can be changed and keeps the change: it is neither linked nor a mere part of an
+    override of something else."""
+    override = thing.override_library
+    return thing.library is None and not (override and override.is_system_override)
+
+
 def register():
     """Give every object its role and, for a glossy support, its reflection."""
     bpy.types.Object.panorama_role = bpy.props.EnumProperty(
-        name="Role", description="What this object is to the composite", items=ROLES, default=SYNTHETIC
+        name="Role",
+        description="What this object is to the composite",
+        items=ROLES,
+        default=SYNTHETIC,
+        override={"LIBRARY_OVERRIDABLE"},
     )
     bpy.types.Object.panorama_reflectivity = bpy.props.FloatProperty(
         name="Reflectivity",
         description="Share of light that this real surface mirrors, in 0 to 1; the photograph stays as it is",
+        subtype="FACTOR",
         min=0,
         max=1,
+        override={"LIBRARY_OVERRIDABLE"},
     )
     bpy.types.Object.panorama_roughness = bpy.props.FloatProperty(
         name="Roughness",
-        description="Blur of this real surface's reflections, in 0 to 1",
+        description="Blur of this real surface's reflections: 0 is a mirror, 1 is matte",
+        subtype="FACTOR",
         min=0,
         max=1,
         default=0.2,
+        override={"LIBRARY_OVERRIDABLE"},
     )
 
 

@@ -5,7 +5,7 @@ import bpy
 from ..cycles_integration import roles
 from ..cycles_integration.pieces import PIECE, kept_pieces
 from . import progress, solving
-from .reporting import Reporting, possible
+from .reporting import Reporting, editable, possible
 
 
 class PANORAMA_OT_calibrate(Reporting, bpy.types.Operator):
@@ -55,7 +55,9 @@ class PANORAMA_OT_set_role(Reporting, bpy.types.Operator):
     bl_idname = "panorama.set_role"
     bl_label = "Set Role"
 
-    role: bpy.props.EnumProperty(name="Role", items=roles.ROLES)
+    role: bpy.props.EnumProperty(
+        name="Role", description="What the selected meshes are to the composite", items=roles.ROLES
+    )
 
     @classmethod
     def poll(cls, context):
@@ -64,7 +66,7 @@ class PANORAMA_OT_set_role(Reporting, bpy.types.Operator):
 
     def work(self, context):
         """Set the role of all selected meshes, and of the shapes behind them."""
-        meshes = progress.selected_meshes(context)
+        meshes, warning = editable(progress.selected_meshes(context))
         state = context.scene.panorama_set
         shapes = {shape.name: shape for shape in state.shapes if shape.is_built}
         behind = [shapes[mesh[PIECE]] for mesh in meshes if mesh.get(PIECE) in shapes]
@@ -75,6 +77,8 @@ class PANORAMA_OT_set_role(Reporting, bpy.types.Operator):
         for mesh in meshes:
             mesh.panorama_role = self.role
         state.maps_are_old = True
+        if warning:
+            self.report({"WARNING"}, warning)
         return f"{len(meshes)} objects: {self.role.title()}"
 
 

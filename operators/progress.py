@@ -5,6 +5,7 @@ from mathutils import Vector
 from ..cycles_integration import picture_coordinates, roles
 from ..cycles_integration.methods import DIRECTIONAL
 from ..cycles_integration.pieces import PIECE
+from ..cycles_integration.place import is_here
 from . import conversion
 
 ORIENTING = ("RECTANGLE", "PARALLELS", "VERTICAL")
@@ -17,9 +18,13 @@ def image_missing(scene) -> str:
 
 def picks_missing(scene) -> str:
     """What step 2 needs before it can be solved."""
-    state = scene.panorama_set
-    if image_missing(scene):
-        return image_missing(scene)
+    return missing_of(scene.panorama_set)
+
+
+def missing_of(state) -> str:
+    """The same of a set, or of the copy of one that a tool edits."""
+    if not state.image_path:
+        return "Open a panorama first"
     if not any(pick.kind in ORIENTING for pick in state.picks):
         return "Add a rectangle, floor lines or verticals, or import a set"
     try:
@@ -34,7 +39,7 @@ def picks_missing(scene) -> str:
 def calibration_missing(scene) -> str:
     """What step 2 lacks for those after it."""
     place = scene.panorama_place
-    done = scene.panorama_set.result.is_solved and place.image and place.origin
+    done = scene.panorama_set.result.is_solved and place.image and is_here(place)
     return "" if done else "Calibrate first"
 
 
