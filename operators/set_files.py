@@ -1,16 +1,35 @@
 """Operators that open a panorama, and read and write the set file."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import bpy
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..cycles_integration.objects_file import append_objects
 from ..cycles_integration.rgbd_place import load_rgbd
+from ..cycles_integration.shipped import shipped_panorama
+from ..ibl_toolkit.images import is_rgbd
 from ..ibl_toolkit.panorama_set import read_set, write_set
 from . import conversion, progress, solving
 from .reporting import Reporting, possible
 
+SAMPLE_SET = Path(__file__).parents[1] / "sample_scenes" / "hotel_room.json"
 
-class PANORAMA_OT_load_image(Reporting, ImportHelper, bpy.types.Operator):
+
+class _Opening(Reporting, ImportHelper):
+    """An operator that opens a file: the one that was dropped, else the one chosen in a File Browser."""
+
+    filepath: bpy.props.StringProperty(
+        name="File", description="The file to open", subtype="FILE_PATH", options={"SKIP_SAVE", "HIDDEN"}
+    )
+
+    def invoke(self, context, event):
+        """Open what was dropped, or ask."""
+        return self.execute(context) if self.filepath else super().invoke(context, event)
+
+
+class PANORAMA_OT_load_image(_Opening, bpy.types.Operator):
     """Open an HDR panorama (OpenEXR or Radiance .hdr, twice as wide as high). Picks and shapes stay"""
 
     bl_idname = "panorama.load_image"
@@ -20,15 +39,10 @@ class PANORAMA_OT_load_image(Reporting, ImportHelper, bpy.types.Operator):
 
     def work(self, context):
         """Check and load the file."""
-        state = context.scene.panorama_set
-        image = solving.load_panorama(self.filepath)
-        state.image, state.image_path = image, self.filepath
-        state.calibration_is_old = state.result.is_solved
-        show_in_image_editors(context, image)
-        return f"{image.name}: {image.size[0]} × {image.size[1]} pixels"
+        return open_image(context, self.filepath)
 
 
-class PANORAMA_OT_load_rgbd(Reporting, ImportHelper, bpy.types.Operator):
+class PANORAMA_OT_load_rgbd(_Opening, bpy.types.Operator):
     """Open a panorama with depth (.exr, as "Render Depth" writes it): calibrated, its depth as a surface"""
 
     bl_idname = "panorama.load_rgbd"
@@ -38,20 +52,25 @@ class PANORAMA_OT_load_rgbd(Reporting, ImportHelper, bpy.types.Operator):
     filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
 
     def work(self, context):
-        """Make the place of the file; picks and shapes of the scene go, since the file needs none."""
-        scene, state = context.scene, context.scene.panorama_set
-        loaded = load_rgbd(scene, self.filepath)
-        state.picks.clear()
-        state.shapes.clear()
-        state.image, state.image_path = loaded.place.image, self.filepath
-        state.result.camera_height, state.result.is_solved = loaded.camera_height, True
-        state.calibration_is_old, state.maps_are_old = False, True
-        show_in_image_editors(context, loaded.place.image)
-        faces, error = len(loaded.surface.mesh.faces), 100 * loaded.surface.median_error
-        return f"{faces} faces, half of them within {error:.2g} % of the depth"
+        """Make the place of the file."""
+        return open_rgbd(context, self.filepath)
 
 
-class PANORAMA_OT_import_set(Reporting, ImportHelper, bpy.types.Operator):
+class PANORAMA_OT_drop_image(_Opening, bpy.types.Operator):
+    """Open a panorama that was dropped into the window: with its depth and calibration where it has them"""
+
+    bl_idname = "panorama.drop_image"
+    bl_label = "Open Dropped Panorama"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    filter_glob: bpy.props.StringProperty(default="*.exr;*.hdr", options={"HIDDEN"})
+
+    def work(self, context):
+        """Open it as what its header says."""
+        return (open_rgbd if is_rgbd(self.filepath) else open_image)(context, self.filepath)
+
+
+class PANORAMA_OT_import_set(_Opening, bpy.types.Operator):
     """Read a panorama set (.json): image, picks and shapes. They replace those of this scene"""
 
     bl_idname = "panorama.import_set"
@@ -62,13 +81,20 @@ class PANORAMA_OT_import_set(Reporting, ImportHelper, bpy.types.Operator):
 
     def work(self, context):
         """Read the file and its image, then replace the scene's set."""
-        panorama_set = read_set(self.filepath)
-        image = solving.load_panorama(panorama_set.image)
-        state = context.scene.panorama_set
-        conversion.state_from_set(state, panorama_set)
-        state.image = image
-        show_in_image_editors(context, image)
-        return f"{image.name} with {len(state.picks)} picks and {len(state.shapes)} shapes"
+        return open_set(context, read_set(self.filepath))
+
+
+class PANORAMA_OT_load_sample(Reporting, bpy.types.Operator):
+    """Open the hotel room that ships with Blender: image, picks and shapes. They replace those of this
+    scene"""
+
+    bl_idname = "panorama.load_sample"
+    bl_label = "Load Sample Room"
+
+    def work(self, context):
+        """Replace the scene's set by the sample's."""
+        sample = read_set(SAMPLE_SET)
+        return open_set(context, replace(sample, image=shipped_panorama(sample.image.name)))
 
 
 class PANORAMA_OT_export_set(Reporting, ExportHelper, bpy.types.Operator):
@@ -115,16 +141,54 @@ class PANORAMA_OT_append_objects(Reporting, ImportHelper, bpy.types.Operator):
         return f"{len(appended.objects)} objects, {len(appended.cameras)} of them cameras"
 
 
+def open_image(context, path) -> str:
+    """Check and load a panorama; picks and shapes stay. Returns the line to report."""
+    state = context.scene.panorama_set
+    image = solving.load_panorama(path)
+    state.image, state.image_path = image, str(path)
+    state.calibration_is_old = state.result.is_solved
+    show_in_image_editors(context, image)
+    depth = "; its depth is opened by Open RGB-D Panorama" if is_rgbd(path) else ""
+    return f"{image.name}: {image.size[0]} × {image.size[1]} pixels{depth}"
+
+
+def open_rgbd(context, path) -> str:
+    """Make the place of an RGB-D file; picks and shapes of the scene go, since the file needs none."""
+    scene, state = context.scene, context.scene.panorama_set
+    loaded = load_rgbd(scene, path)
+    state.picks.clear()
+    state.shapes.clear()
+    state.image, state.image_path = loaded.place.image, str(path)
+    state.result.camera_height, state.result.is_solved = loaded.camera_height, True
+    state.calibration_is_old, state.maps_are_old = False, True
+    show_in_image_editors(context, loaded.place.image)
+    faces, error = len(loaded.surface.mesh.faces), 100 * loaded.surface.median_error
+    return f"{faces} faces, half of them within {error:.2g} % of the depth"
+
+
+def open_set(context, panorama_set) -> str:
+    """Load a set's image, then replace the scene's set by it."""
+    image = solving.load_panorama(panorama_set.image)
+    state = context.scene.panorama_set
+    conversion.state_from_set(state, panorama_set)
+    state.image = image
+    show_in_image_editors(context, image)
+    return f"{image.name} with {len(state.picks)} picks and {len(state.shapes)} shapes"
+
+
 def show_in_image_editors(context, image):
-    """Show the panorama in the window's open Image Editors, where its points are picked."""
-    for area in context.screen.areas if context.screen else ():
-        if area.type == "IMAGE_EDITOR":
-            area.spaces.active.image = image
+    """Show the panorama in the open Image Editors of the windows on this scene, where points are picked."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas if window.scene == context.scene else ():
+            if area.type == "IMAGE_EDITOR":
+                area.spaces.active.image = image
 
 
 classes = (
     PANORAMA_OT_load_image,
     PANORAMA_OT_load_rgbd,
+    PANORAMA_OT_drop_image,
+    PANORAMA_OT_load_sample,
     PANORAMA_OT_import_set,
     PANORAMA_OT_export_set,
     PANORAMA_OT_append_objects,

@@ -15,6 +15,7 @@ import OpenEXR
 
 from ..cycles_integration import capture, maps, materials, place, preparation, rendering
 from ..cycles_integration.pieces import update_pieces
+from ..cycles_integration.shipped import shipped_panorama
 from ..ibl_toolkit import metrics
 from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import RGBD, exposure_for, read_panorama, write_exr, write_png, write_rgbd
@@ -115,7 +116,7 @@ def run_job(scene: bpy.types.Scene, folder: Path, effort: Effort, progress) -> d
 
 def captured_room() -> Path:
     """The photograph that every Blender brings along."""
-    return Path(bpy.utils.resource_path("LOCAL"), "datafiles", "studiolights", "world", "interior.exr")
+    return shipped_panorama("interior.exr")
 
 
 def copy_input(folder, image_width):

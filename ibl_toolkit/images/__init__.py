@@ -5,7 +5,7 @@ from .errors import ImageError
 from .exr import write_exr
 from .png import exposure_for, write_png
 from .reading import DEFAULT_MAX_BYTES, read_panorama
-from .rgbd import RGBD, read_rgbd, write_rgbd
+from .rgbd import RGBD, is_rgbd, read_rgbd, write_rgbd
 from .size import panorama_size
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "RGBD",
     "ImageError",
     "exposure_for",
+    "is_rgbd",
     "panorama_size",
     "read_panorama",
     "read_rgbd",

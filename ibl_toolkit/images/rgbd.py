@@ -62,6 +62,25 @@ def read_rgbd(path, *, max_bytes=DEFAULT_MAX_BYTES):
     return rgbd
 
 
+def is_rgbd(path):
+    """Whether a file's header tells of an RGB-D panorama: channel Z and both attributes; reads no pixels.
+
+    Raises: ImageError for a damaged OpenEXR header; OSError for a file that cannot be opened.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     exr.write_exr(f"{folder}/grey.exr", {"Y": np.ones((4, 8), dtype=np.float16)})
+    ...     is_rgbd(f"{folder}/grey.exr")
+    False
+    """
+    with open(path, "rb") as file:
+        if file.read(len(exr_header.MAGIC)) != exr_header.MAGIC:
+            return False
+    needed = {WORLD_FROM_PANORAMA, CAMERA_HEIGHT}
+    parts = exr_header.read_header(path)
+    return any(channel_named(part, "Z") and needed <= part.attributes.keys() for part in parts)
+
+
 def write_rgbd(path, rgbd, half=None):
     """Write an RGB-D panorama, all or nothing: R G B in half or float, Z in 32-bit float.
 
