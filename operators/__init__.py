@@ -3,21 +3,41 @@
 import bpy
 
 from . import (
+    asset_library,
     calibration,
     clipped_light,
     draw_shape,
     light,
     picking,
     pictures,
+    placing,
     probes,
     properties,
+    render_presets,
     set_files,
+    sun_picker,
     surfaces,
     tools,
     view_properties,
+    viewing,
 )
 
-OPERATORS = (set_files, picking, calibration, draw_shape, probes, surfaces, light, clipped_light, pictures)
+OPERATORS = (
+    set_files,
+    picking,
+    calibration,
+    draw_shape,
+    probes,
+    placing,
+    sun_picker,
+    surfaces,
+    viewing,
+    light,
+    clipped_light,
+    pictures,
+    render_presets,
+    asset_library,
+)
 
 
 def register():

@@ -2,9 +2,33 @@
 
 import bpy
 
-from . import image_editor, lists, overlays, picture_panels, place_panels, shape_buttons
+from . import (
+    background,
+    file_handlers,
+    image_editor,
+    lists,
+    menus,
+    overlays,
+    picture_panels,
+    place_panels,
+    render_presets,
+    shape_buttons,
+    view_header,
+)
 
-PANELS = (lists, shape_buttons, place_panels, picture_panels, image_editor)
+PANELS = (
+    lists,
+    shape_buttons,
+    render_presets,
+    place_panels,
+    picture_panels,
+    image_editor,
+    menus,
+    file_handlers,
+    view_header,
+)
+HOOKS = (menus, render_presets, view_header, background, overlays)
+"""What enters Blender's own menus, folders and editors."""
 
 
 def register():
@@ -12,12 +36,14 @@ def register():
     for module in PANELS:
         for cls in module.classes:
             bpy.utils.register_class(cls)
-    overlays.register()
+    for module in HOOKS:
+        module.register()
 
 
 def unregister():
     """Take them back, in reverse."""
-    overlays.unregister()
+    for module in reversed(HOOKS):
+        module.unregister()
     for module in reversed(PANELS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)

@@ -4,6 +4,7 @@ import bpy
 
 from ..operators import progress
 from ..operators.pictures import frame
+from .render_presets import PANORAMA_PT_render_presets
 from .steps import Step
 from .texts import figure, paragraph
 
@@ -33,6 +34,11 @@ class PANORAMA_PT_objects(Step, bpy.types.Panel):
         row.operator("panorama.add_ball", text="Mirror Ball", icon="SHADING_RENDERED").kind = "MIRROR"
         row.operator("panorama.add_ball", text="Matte Ball", icon="SHADING_SOLID").kind = "MATTE"
         layout.operator("panorama.append_objects", text="Append Objects...", icon="APPEND_BLEND")
+        layout.operator("panorama.send_to_place", icon="TRACKER")
+        row = layout.row(align=True)
+        row.operator("panorama.add_sun", text="Add Sun", icon="LIGHT_SUN")
+        row.operator("panorama.pick_sun", icon="EYEDROPPER")
+        layout.operator("panorama.add_asset_library", icon="ASSET_MANAGER")
         self.draw_selection(context)
 
     def draw_selection(self, context):
@@ -103,6 +109,10 @@ class PANORAMA_PT_render(Step, bpy.types.Panel):
             layer.name.startswith("Panorama") for layer in scene.view_layers
         )
 
+    def draw_header_preset(self, context):
+        """Presets of render quality."""
+        PANORAMA_PT_render_presets.draw_panel_header(self.layout)
+
     def draw(self, context):
         """Settings and buttons."""
         scene, layout = context.scene, self.layout
@@ -113,7 +123,9 @@ class PANORAMA_PT_render(Step, bpy.types.Panel):
         column.prop(scene, "camera")
         picture = frame(scene)
         figure(layout, "Picture", f"{picture.width} × {picture.height} pixels")
-        layout.operator("panorama.add_camera", icon="CAMERA_DATA")
+        row = layout.row(align=True)
+        row.operator("panorama.add_camera", icon="CAMERA_DATA")
+        row.operator("panorama.camera_from_view", text="From View")
         self.say(context, progress.camera_missing(scene))
         column = layout.column(align=True)
         column.operator("panorama.render_frame", icon="RENDER_STILL")

@@ -43,6 +43,8 @@ class PANORAMA_PT_image(Step, bpy.types.Panel):
         row = column.row(align=True)
         row.operator("panorama.import_set", text="Import Set...", icon="IMPORT")
         row.operator("panorama.export_set", text="Export Set...", icon="EXPORT")
+        if not state.image_path:
+            column.operator("panorama.load_sample", icon="HOME")
 
 
 class PANORAMA_PT_calibration(Step, bpy.types.Panel):

@@ -1,0 +1,86 @@
+"""Sample balls and the look-up of a place as assets, in .blend files of their own."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from . import asset_pictures, blender_images, lookup, maps
+from .place import Place
+
+BALLS_FILE = "Sample Balls.blend"
+TAGS = ("panorama", "HDRI", "light probe")
+PICTURE_WIDTH = 256
+
+
+def write_balls(folder: Path, balls: dict[str, bpy.types.Object]):
+    """Write sample balls to a file of assets, in the stead of one written before.
+
+    ``balls``: MIRROR or MATTE to its object, which the caller removes.
+    """
+    told = {
+        "MIRROR": "A perfect mirror: stand it in a place to see what is reflected, and where from",
+        "MATTE": "Grey and diffuse, albedo 0.5: shows where light comes from, and its colour",
+    }
+    for kind, ball in balls.items():
+        _mark(ball, told[kind], asset_pictures.ball(kind))
+    _write(folder / BALLS_FILE, set(balls.values()))
+
+
+def write_lookup(folder: Path, place: Place) -> str:
+    """Write the look-up of a place to a file of assets, in the stead of one written before; returns its name.
+
+    In a material anywhere it gives the photograph as seen from the panorama's origin, and its light.
+    """
+    panorama = Path(place.image.filepath or place.image.name).stem
+    with _temporary(lookup.build_lookup(place).copy()) as group:
+        group.name = f"Panorama {panorama}"
+        told = "Radiance of the panorama at a point, as seen from where it was captured, and its light there"
+        image = maps.shrink(blender_images.array_from_image(place.image), PICTURE_WIDTH)
+        _mark(group, f"{told}: {panorama}", asset_pictures.panorama(np.maximum(image, 0)))
+        _write(folder / f"Panorama {panorama}.blend", {group})
+        return group.name
+
+
+def add_library(preferences: bpy.types.Preferences, name: str, folder: Path) -> bool:
+    """Make a folder an asset library of this Blender; False where it is one already."""
+    libraries = preferences.filepaths.asset_libraries
+    if any(Path(library.path).resolve() == folder.resolve() for library in libraries if library.path):
+        return False
+    libraries.new(name=name, directory=str(folder))
+    preferences.is_dirty = True  # Blender saves it as it saves other preferences
+    return True
+
+
+def _mark(block, description, picture):
+    block.asset_mark()
+    block.asset_data.description = description
+    block.asset_data.author = "Expanded Panoramas"
+    for tag in TAGS:
+        block.asset_data.tags.new(tag, skip_if_exists=True)
+    preview = block.preview_ensure()
+    preview.image_size = picture.shape[1::-1]
+    preview.image_pixels_float.foreach_set(np.ascontiguousarray(picture[::-1], np.float32).ravel())
+
+
+def _write(path, blocks):
+    """Write beside the file, then over it: a killed Blender leaves the old assets or the new ones."""
+    beside = path.with_name(f".{path.name}.part")
+    try:
+        bpy.data.libraries.write(str(beside), blocks, path_remap="ABSOLUTE", fake_user=True, compress=True)
+        beside.replace(path)
+    except RuntimeError as error:
+        raise OSError(f"{path}: Blender cannot write it: {error}") from error
+    finally:
+        beside.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def _temporary(group):
+    try:
+        yield group
+    finally:
+        bpy.data.node_groups.remove(group)

@@ -1,0 +1,57 @@
+"""One lamp of a light map, as an artist asks for it: the strongest, or the one at a point of the image."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import equirectangular
+from .discs import BRIGHT, LEAST_SHARE, Disc, split_into_discs
+
+NEAR_PIXELS = 1.5
+"""A point this near to a lamp [px of the map] is taken for one on it."""
+
+
+def strongest_lamp(image: np.ndarray) -> Disc:
+    """Return the lamp of a light map (H, W, 3) that gives the most light: a region, not the brightest pixel.
+
+    Raises ValueError where no region stands out, and for what `check_light_map` refuses.
+
+    >>> image = np.full((64, 128, 3), 0.01, np.float32)
+    >>> image[10, 10] = 900  # one hot pixel
+    >>> image[20:24, 40:48] = 100
+    >>> strongest_lamp(image).pixels.size
+    32
+    """
+    return _lamps(image)[0]
+
+
+def lamp_at(image: np.ndarray, uv: np.ndarray) -> Disc:
+    """Return the lamp of a light map (H, W, 3) at an image point (2,).
+
+    Raises ValueError, naming the point and the nearest lamp, where there is none; for a map without lamps as
+    `strongest_lamp` does.
+    """
+    lamps = _lamps(image)
+    height, width = image.shape[:2]
+    at = equirectangular.direction_from_uv(uv)
+    directions = equirectangular.pixel_directions(width, height).reshape(-1, 3)
+    cosines = [float((directions[lamp.pixels] @ at).max()) for lamp in lamps]
+    nearest = int(np.argmax(cosines))
+    if np.arccos(min(cosines[nearest], 1)) <= NEAR_PIXELS * np.pi / height:
+        return lamps[nearest]
+    u, v = equirectangular.uv_from_direction(lamps[nearest].direction)
+    raise ValueError(
+        f"no lamp at u {uv[0]:.3f}, v {uv[1]:.3f}: the nearest is at u {u:.3f}, v {v:.3f}; a lamp is "
+        f"{BRIGHT:g} times as bright as the mean and gives {LEAST_SHARE:.1%} of the light"
+    )
+
+
+def _lamps(image):
+    """The lamps of a map, the strongest first, at least one."""
+    lamps = split_into_discs(image).discs
+    if not lamps:
+        raise ValueError(
+            f"no lamp stands out of this map: none is {BRIGHT:g} times as bright as the mean and gives "
+            f"{LEAST_SHARE:.1%} of the light"
+        )
+    return lamps

@@ -1,0 +1,52 @@
+"""One lamp of a map: the region with the most light, and the one under a click."""
+
+import numpy as np
+import pytest
+
+from expanded_panoramas.ibl_toolkit import equirectangular
+from expanded_panoramas.ibl_toolkit.light.picked_lamp import lamp_at, strongest_lamp
+
+WIDTH, HEIGHT = 256, 128
+
+
+def disc(image, uv, radius_deg, radiance):
+    """Paint a round lamp; returns the unit vector to its middle."""
+    middle = equirectangular.direction_from_uv(uv)
+    directions = equirectangular.pixel_directions(WIDTH, HEIGHT)
+    image[directions @ middle > np.cos(np.radians(radius_deg))] = radiance
+    return middle
+
+
+@pytest.fixture
+def image():
+    return np.full((HEIGHT, WIDTH, 3), 0.01, np.float32)
+
+
+def test_the_region_with_the_most_light_not_the_brightest_pixel(image):
+    image[40, 40] = 500  # half of the other's light
+    wide = disc(image, (0.75, 0.25), 5, 20)
+    found = strongest_lamp(image)
+    assert found.direction @ wide > np.cos(np.radians(0.5))
+    assert found.radius == pytest.approx(np.radians(5), rel=0.1)
+
+
+@pytest.mark.parametrize("lamp_uv", [(0.75, 0.25), (0.0, 0.4), (0.3, 0.02)])  # plain, on the seam, at a pole
+def test_the_lamp_under_a_click(image, lamp_uv):
+    disc(image, (0.5, 0.7), 8, 100)  # more light elsewhere
+    wanted = disc(image, lamp_uv, 4, 50)
+    found = lamp_at(image, np.array(lamp_uv))
+    assert found.direction @ wanted > np.cos(np.radians(0.5))
+    colour = image.reshape(-1, 3)[found.pixels]
+    assert colour.min() == 50
+
+
+def test_beside_a_lamp_is_none(image):
+    disc(image, (0.75, 0.25), 4, 50)
+    with pytest.raises(ValueError, match=r"no lamp at u 0.700, v 0.250: the nearest is at u 0.750, v 0.250"):
+        lamp_at(image, np.array([0.7, 0.25]))
+
+
+def test_nothing_stands_out_of_an_even_map(image):
+    for find in (strongest_lamp, lambda even: lamp_at(even, np.array([0.5, 0.5]))):
+        with pytest.raises(ValueError, match="no lamp stands out"):
+            find(image)
