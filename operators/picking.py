@@ -17,7 +17,7 @@ class PANORAMA_OT_add_pick(Reporting, bpy.types.Operator):
     bl_idname = "panorama.add_pick"
     bl_label = "Add Pick"
 
-    kind: bpy.props.EnumProperty(name="Kind", items=PICK_KINDS)
+    kind: bpy.props.EnumProperty(name="Kind", description="What is to be clicked", items=PICK_KINDS)
 
     def work(self, context):
         """Append a pick whose points are still to be set."""
@@ -36,7 +36,7 @@ class PANORAMA_OT_add_shape(Reporting, bpy.types.Operator):
     bl_idname = "panorama.add_shape"
     bl_label = "Add Shape"
 
-    kind: bpy.props.EnumProperty(name="Kind", items=SHAPE_KINDS)
+    kind: bpy.props.EnumProperty(name="Kind", description="What the shape is", items=SHAPE_KINDS)
 
     def work(self, context):
         """Append a shape whose points are still to be set; walls stand over the active flat shape."""
@@ -53,7 +53,9 @@ class PANORAMA_OT_add_shape(Reporting, bpy.types.Operator):
 class _OnItem(Reporting):
     """An operator on the active pick or shape."""
 
-    target: bpy.props.EnumProperty(name="List", items=LISTS)
+    target: bpy.props.EnumProperty(
+        name="List", description="The list whose selected item is meant", items=LISTS
+    )
 
     @classmethod
     def poll(cls, context):
@@ -100,7 +102,9 @@ class PANORAMA_OT_move_item(_OnItem, bpy.types.Operator):
     bl_idname = "panorama.move_item"
     bl_label = "Move"
 
-    step: bpy.props.IntProperty(name="Step", default=1, min=-1, max=1)
+    step: bpy.props.IntProperty(
+        name="Step", description="Number of places to move down the list; -1: up", default=1, min=-1, max=1
+    )
 
     def work(self, context):
         """Swap it with its neighbour."""
@@ -118,7 +122,9 @@ class PANORAMA_OT_resize_item(_OnItem, bpy.types.Operator):
     bl_idname = "panorama.resize_item"
     bl_label = "More or Fewer Points"
 
-    grow: bpy.props.BoolProperty(name="Add", default=True)
+    grow: bpy.props.BoolProperty(
+        name="Add", description="Add at the end; otherwise take the last away", default=True
+    )
 
     def work(self, context):
         """Append or remove points at the end."""

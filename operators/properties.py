@@ -102,7 +102,7 @@ class PanoramaPick(bpy.types.PropertyGroup):
         unit="LENGTH",
         update=_picks_changed,
     )
-    points: CollectionProperty(type=PanoramaPoint)
+    points: CollectionProperty(type=PanoramaPoint, description="Its points in the image, in order")
 
 
 class PanoramaShape(bpy.types.PropertyGroup):
@@ -110,7 +110,7 @@ class PanoramaShape(bpy.types.PropertyGroup):
 
     name: StringProperty(name="Name", description="Name of the shape and its object", update=_shapes_changed)
     kind: EnumProperty(name="Kind", description="What the points mean", items=SHAPE_KINDS)
-    points: CollectionProperty(type=PanoramaPoint)
+    points: CollectionProperty(type=PanoramaPoint, description="Its points on the floor, in order")
     of: StringProperty(
         name="Over", description="The flat shape over which the walls stand", update=_shapes_changed
     )
@@ -119,7 +119,9 @@ class PanoramaShape(bpy.types.PropertyGroup):
         description="Give the height as a number instead of picking a point of the upper edge",
         update=_shapes_changed,
     )
-    top: PointerProperty(type=PanoramaPoint)
+    top: PointerProperty(
+        type=PanoramaPoint, description="Point of its upper edge, right above its first point"
+    )
     height: FloatProperty(
         name="Height",
         description="Height above the floor",
@@ -141,22 +143,26 @@ class PanoramaShape(bpy.types.PropertyGroup):
     reflectivity: FloatProperty(
         name="Reflectivity",
         description="Share of the light that the real surface mirrors; new objects then show in it",
+        subtype="FACTOR",
         min=0,
         max=1,
         update=_shapes_changed,
     )
     roughness: FloatProperty(
         name="Roughness",
-        description="Blur of the real surface's reflections, 0 for a mirror",
+        description="Blur of the real surface's reflections: 0 is a mirror, 1 is matte",
+        subtype="FACTOR",
         min=0,
         max=1,
         default=DEFAULT_ROUGHNESS,
         update=_shapes_changed,
     )
     is_built: BoolProperty(options={"HIDDEN"})
-    size: FloatVectorProperty(size=3)
-    residual: FloatProperty()
-    warnings: StringProperty()
+    size: FloatVectorProperty(description="Length, width and height as built", size=3, unit="LENGTH")
+    residual: FloatProperty(
+        description="Largest distance between its picks and the shape as built", unit="LENGTH"
+    )
+    warnings: StringProperty(description="What is doubtful about the shape, a sentence per line")
 
 
 class PanoramaSetState(bpy.types.PropertyGroup):
@@ -165,12 +171,14 @@ class PanoramaSetState(bpy.types.PropertyGroup):
     image_path: StringProperty(
         name="Panorama", description="The HDR panorama, OpenEXR or Radiance .hdr", subtype="FILE_PATH"
     )
-    image: PointerProperty(type=bpy.types.Image)
+    image: PointerProperty(type=bpy.types.Image, description="The panorama as Blender loaded it")
     objects_path: StringProperty(
         name="Objects", description=".blend file whose first scene holds the new objects", subtype="FILE_PATH"
     )
-    picks: CollectionProperty(type=PanoramaPick)
-    active_pick: IntProperty(name="Active Pick")
+    picks: CollectionProperty(type=PanoramaPick, description="What was clicked to calibrate")
+    active_pick: IntProperty(
+        name="Active Pick", description="Number of the pick selected in the list, from 0"
+    )
     camera_height: FloatProperty(
         name="Camera Height",
         description="Height of the lens above the floor; scales the whole place. 0: not known",
@@ -181,14 +189,16 @@ class PanoramaSetState(bpy.types.PropertyGroup):
         unit="LENGTH",
         update=_camera_height_changed,
     )
-    shapes: CollectionProperty(type=PanoramaShape)
-    active_shape: IntProperty(name="Active Shape")
-    result: PointerProperty(type=PanoramaResult)
-    job: PointerProperty(type=PanoramaJob)
-    calibration_is_old: BoolProperty()
-    shapes_are_old: BoolProperty()
-    maps_are_old: BoolProperty()
-    problem: StringProperty()
+    shapes: CollectionProperty(type=PanoramaShape, description="What stands in the real place")
+    active_shape: IntProperty(
+        name="Active Shape", description="Number of the shape selected in the list, from 0"
+    )
+    result: PointerProperty(type=PanoramaResult, description="What the last calibration found")
+    job: PointerProperty(type=PanoramaJob, description="How light and pictures are made")
+    calibration_is_old: BoolProperty(description="Whether picks or image changed since the calibration")
+    shapes_are_old: BoolProperty(description="Whether shapes changed since they were built")
+    maps_are_old: BoolProperty(description="Whether the place changed since its light was prepared")
+    problem: StringProperty(description="Why the last change of the camera height could not be followed")
 
 
 classes = (PanoramaPoint, PanoramaPick, PanoramaShape, PanoramaResult, PanoramaJob, PanoramaSetState)
@@ -198,7 +208,9 @@ def register():
     """Give every scene its panorama set."""
     for cls in classes:
         bpy.utils.register_class(cls)
-    bpy.types.Scene.panorama_set = PointerProperty(type=PanoramaSetState)
+    bpy.types.Scene.panorama_set = PointerProperty(
+        type=PanoramaSetState, description="What the artist said of this scene's panorama"
+    )
 
 
 def unregister():

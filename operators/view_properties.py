@@ -39,7 +39,9 @@ class PanoramaView(bpy.types.PropertyGroup):
 def register():
     """Give every scene its view settings."""
     bpy.utils.register_class(PanoramaView)
-    bpy.types.Scene.panorama_view = PointerProperty(type=PanoramaView)
+    bpy.types.Scene.panorama_view = PointerProperty(
+        type=PanoramaView, description="How 3D views show this scene's panorama"
+    )
 
 
 def unregister():
