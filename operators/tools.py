@@ -83,6 +83,7 @@ class ToolOperator(Reporting):
 
     bl_options = {"UNDO"}  # not REGISTER: there is no adjusting of what the mouse did
     tool = None
+    shown_keys = None
 
     def execute(self, context):
         """Apply what was picked or drawn."""
@@ -103,7 +104,7 @@ class ToolOperator(Reporting):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         context.window_manager.modal_handler_add(self)
-        context.workspace.status_text_set(self._draw_status)
+        self._show_keys(context)
         canvas.redraw(context)
         return {"RUNNING_MODAL"}
 
@@ -128,6 +129,7 @@ class ToolOperator(Reporting):
             self.tool.region = under[2].as_pointer() if under else 0
             answer = self.tool.handle(on, xy, event)
         canvas.redraw(context)
+        self._show_keys(context)
         return self._answered(context, answer)
 
     def cancel(self, context):
@@ -154,11 +156,15 @@ class ToolOperator(Reporting):
         canvas.redraw(context)
         return result
 
-    def _draw_status(self, header, context):
-        if _active is None:
-            return
-        for icon, text in _active.keys:
-            header.layout.label(text=text, icon=icon)
+    def _show_keys(self, context):
+        if self.tool.keys != self.shown_keys:
+            self.shown_keys = self.tool.keys
+            context.workspace.status_text_set(_draw_status)
+
+
+def _draw_status(header, context):  # Blender calls functions only, no methods
+    for icon, text in _active.keys if _active else ():
+        header.layout.label(text=text, icon=icon)
 
 
 def register():
