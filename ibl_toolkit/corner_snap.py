@@ -17,7 +17,11 @@ STEPS_PER_PIXEL = 2
 """Resolution of the patch: rows of the image are taken twice, so that bilinear look-up blurs little."""
 WINDOW_PIXELS = 4
 """Half the width of the window whose edges make a corner: it must hold the corner and nothing else."""
-BLUR_PIXELS = 0.75
+BLUR_PIXELS = 0.5
+ROUND_PIXELS = 1
+"""Half the width of the middle that is left out: blur rounds a corner there."""
+BRIGHT = 0.95
+"""Share of a window's pixels up to whose luminance it is taken linearly."""
 LEAST_CONTRAST = 0.02
 """Least range of brightness of a patch, of 1: less is taken for noise."""
 LEAST_COHERENCE = 0.6
@@ -52,13 +56,16 @@ def snap_to_corner(image, uv, radius_pixels=RADIUS_PIXELS):
     precise location of distinct points, corners and centres of circular features, ISPRS 1987.
     """
     patch = _Patch(uv, image.shape[0], radius_pixels + 2 * WINDOW_PIXELS)
-    brightness = _brightness(sample(image, patch.directions))
-    if np.ptp(brightness) < LEAST_CONTRAST:
+    luminance = _luminance(sample(image, patch.directions))
+    mapped = _mapped(luminance)
+    if np.ptp(mapped) < LEAST_CONTRAST:
         return Snap(np.asarray(uv, np.float64), 0.0)
-    radius, window = radius_pixels * STEPS_PER_PIXEL, WINDOW_PIXELS * STEPS_PER_PIXEL
-    for start in _candidates(brightness, radius, window):
-        found = cv2.cornerSubPix(brightness, start.copy(), (window, window), (-1, -1), _STOP)[0, 0]
-        coherence = _coherence(brightness, found, window)
+    radius, window, middle = (n * STEPS_PER_PIXEL for n in (radius_pixels, WINDOW_PIXELS, ROUND_PIXELS))
+    for start in _candidates(mapped, radius, window):
+        # A film's curve moves a blurred edge to its dark side; the corner itself is sought in linear light.
+        linear = _clipped(luminance, start[0, 0], window)
+        found = cv2.cornerSubPix(linear, start.copy(), (window, window), (middle, middle), _STOP)[0, 0]
+        coherence = _coherence(linear, found, window)
         if np.linalg.norm(found - patch.centre) <= radius and coherence >= LEAST_COHERENCE:
             return Snap(patch.uv_at(found), coherence)
     return Snap(np.asarray(uv, np.float64), 0.0)
@@ -85,19 +92,34 @@ class _Patch:
         return uv_from_direction(self.ahead + x * self.right + y * self.down)
 
 
-def _brightness(radiance):
-    """Luminance (n, n) float32 in [0, 1), mapped as by a film whose middle grey is the patch's own."""
-    luminance = np.maximum(np.nan_to_num(radiance[..., :3] @ REC709, nan=0.0, posinf=1e30), 0.0)
+def _luminance(radiance):
+    """Luminance (n, n) of radiance (n, n, C), slightly blurred; what is not finite is as bright as a lamp."""
+    luminance = radiance[..., :3] @ REC709
+    usable = np.isfinite(luminance) & (luminance >= 0)
+    brightest = luminance[usable].max() if usable.any() else 0.0
+    luminance = np.where(usable, luminance, brightest).astype(np.float64)
+    return cv2.GaussianBlur(luminance, (0, 0), BLUR_PIXELS * STEPS_PER_PIXEL)
+
+
+def _mapped(luminance):
+    """Brightness (n, n) float32 in [0, 1), as of a film whose middle grey is the patch's own."""
     grey = np.median(luminance) or luminance.mean() or 1.0
-    mapped = (luminance / (luminance + grey)).astype(np.float32)
-    return cv2.GaussianBlur(mapped, (0, 0), BLUR_PIXELS * STEPS_PER_PIXEL)
+    return (luminance / (luminance + grey)).astype(np.float32)
 
 
-def _candidates(brightness, radius, window):
+def _clipped(luminance, xy, window):
+    """Luminance (n, n) float32, 1 at what is bright around a point: lamps count no more than their wall."""
+    column, row = xy.astype(int)
+    around = luminance[max(row - window, 0) : row + window + 1, max(column - window, 0) : column + window + 1]
+    bright = np.quantile(around, BRIGHT) or 1.0
+    return (np.minimum(luminance, bright) / bright).astype(np.float32)
+
+
+def _candidates(mapped, radius, window):
     """Starts (1, 1, 2) float32, the nearest first: where gradients run two ways, and more than around."""
-    strength = cv2.cornerMinEigenVal(brightness, window | 1)
-    middle = (np.array(brightness.shape) - 1) / 2
-    i, j = np.meshgrid(*(np.arange(n) for n in brightness.shape), indexing="ij")
+    strength = cv2.cornerMinEigenVal(mapped, window | 1)
+    middle = (np.array(mapped.shape) - 1) / 2
+    i, j = np.meshgrid(*(np.arange(n) for n in mapped.shape), indexing="ij")
     distance = np.hypot(i - middle[0], j - middle[1])
     within = distance <= radius
     peak = (strength >= cv2.dilate(strength, np.ones((window, window)))) & within
@@ -107,7 +129,7 @@ def _candidates(brightness, radius, window):
     return places[:, None, None, ::-1].astype(np.float32)
 
 
-def _coherence(brightness, xy, window):
+def _coherence(linear, xy, window):
     """How well the edges around a point meet in it: 1 − 2 Σ (g·d)² / Σ |g|²|d|², g gradients, d offsets.
 
     0 where they run at random, below where they run around it; 0 as well for an edge alone.
@@ -115,7 +137,7 @@ def _coherence(brightness, xy, window):
     column, row = np.round(xy).astype(int)
     size = 2 * window + 1
     low_x, low_y = column - window, row - window
-    part = brightness[max(low_y - 1, 0) : low_y + size + 1, max(low_x - 1, 0) : low_x + size + 1]
+    part = linear[max(low_y - 1, 0) : low_y + size + 1, max(low_x - 1, 0) : low_x + size + 1]
     if part.shape != (size + 2, size + 2):
         return 0.0
     gx = (part[1:-1, 2:] - part[1:-1, :-2]).ravel()

@@ -95,12 +95,11 @@ class blending:
 
 
 def _fan(points, colour):
-    points = np.asarray(points, np.float32)
+    corners = np.zeros((len(points), 3), np.float32)  # doubles would be read as if they were these
+    corners[:, :2] = points
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    indices = [(0, i, i + 1) for i in range(1, len(points) - 1)]
-    batch = batch_for_shader(
-        shader, "TRIS", {"pos": np.column_stack([points, np.zeros(len(points))])}, indices=indices
-    )
+    indices = [(0, i, i + 1) for i in range(1, len(corners) - 1)]
+    batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=indices)
     shader.uniform_float("color", colour)
     with blending():
         batch.draw(shader)

@@ -4,10 +4,18 @@ import bpy
 
 from ..operators.conversion import pick_label, point_labels
 from ..operators.picking import GROWS_BY
-from ..operators.properties import PICK_KINDS
 from .texts import figure, paragraph
 
 PICK_ICONS = {"RECTANGLE": "MESH_PLANE", "PARALLELS": "ALIGN_JUSTIFY", "VERTICAL": "EMPTY_SINGLE_ARROW"}
+PICK_ENTRIES = (
+    ("Floor Rectangle", "RECTANGLE", {"plane": "FLOOR"}),
+    ("Ceiling Rectangle", "RECTANGLE", {"plane": "CEILING"}),
+    ("Wall Rectangle", "RECTANGLE", {"plane": "WALL"}),
+    ("Floor Lines along X", "PARALLELS", {"axis": "X"}),
+    ("Floor Lines along Y", "PARALLELS", {"axis": "Y"}),
+    ("Verticals", "VERTICAL", {}),
+    ("Known Length", "LENGTH", {}),
+)
 SHAPE_ICONS = {
     "walls": "MOD_BUILD",
     "box": "MESH_CUBE",
@@ -50,10 +58,13 @@ class PANORAMA_MT_add_pick(bpy.types.Menu):
     bl_label = "Add Pick"
 
     def draw(self, context):
-        """All kinds."""
-        for kind, name, _ in PICK_KINDS:
+        """All kinds; each begins to be picked on the panorama."""
+        for text, kind, choice in PICK_ENTRIES:
             icon = PICK_ICONS.get(kind, "DRIVER_DISTANCE")
-            self.layout.operator("panorama.add_pick", text=name, icon=icon).kind = kind
+            button = self.layout.operator("panorama.pick_points", text=text, icon=icon)
+            button.kind = kind
+            for name, value in choice.items():
+                setattr(button, name, value)
 
 
 def draw_picks(layout, state, from_cursor=False):
@@ -66,6 +77,7 @@ def draw_picks(layout, state, from_cursor=False):
     fields = {"RECTANGLE": "plane", "PARALLELS": "axis", "LENGTH": "metres"}
     if pick.kind in fields:
         column.row().prop(pick, fields[pick.kind], expand=pick.kind != "LENGTH")
+    column.operator("panorama.pick_points", text="Pick in View", icon="RESTRICT_SELECT_OFF").kind = "SELECTED"
     _draw_points(layout, pick, "PICK", from_cursor)
 
 
