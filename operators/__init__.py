@@ -8,6 +8,7 @@ from . import (
     clipped_light,
     draw_shape,
     light,
+    pick_points,
     picking,
     pictures,
     placing,
@@ -25,6 +26,7 @@ from . import (
 OPERATORS = (
     set_files,
     picking,
+    pick_points,
     calibration,
     draw_shape,
     probes,
