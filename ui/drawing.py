@@ -62,11 +62,15 @@ def ellipse(centre, half_axes, colour, width=1.5):
     )
 
 
-def text(xy, string, colour=(1, 1, 1, 1), size=12):
-    """A line of text with its lower left corner at (2,)."""
+def text(xy, string, colour=(1, 1, 1, 1), size=12, *, backed=False):
+    """A line of text with its lower left corner at (2,), on a dark ground where it must be read."""
     if not np.isfinite(xy).all():
         return
     blf.size(FONT, size * scale())
+    if backed:
+        edge = size * scale() / 2
+        width, height = blf.dimensions(FONT, string)
+        rectangle(np.subtract(xy, edge), np.add(xy, (width + edge, height + edge)), SHADOW)
     blf.enable(FONT, blf.SHADOW)
     blf.shadow(FONT, 5, *SHADOW)
     blf.color(FONT, *colour)
