@@ -35,7 +35,7 @@ def _draw_tool(canvas, tool):
     points, base, height, _ = tool.preview()
     colour = (*COLOURS[shape.role], 1)
     lines = [on_floor(points)] if base is None else wireframe(base.outline, height)
-    segments = [pair for line in lines for pair in np.stack([line[:-1], line[1:]], axis=1)]
+    segments = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
     drawing.lines(_curves(canvas, shape.stand.from_origin(segments)), colour, 2)
     for point in shape.points:
         drawing.dots(_pixels(canvas, shape, (*point, 0)), colour)
@@ -50,10 +50,10 @@ def _draw_at_mouse(tool):
     problem = tool.problem or tool.preview()[3]
     at = tool.xy + BESIDE * drawing.scale()
     if tool.typed:
-        drawing.text(at, tool.typed, (1, 1, 1, 1), 15)
-        at = at + np.array([0, 20]) * drawing.scale()
+        drawing.text(at, tool.typed, size=15, backed=True)
+        at = at + np.array([0, 32]) * drawing.scale()
     if problem:
-        drawing.text(at, problem, WRONG)
+        drawing.text(at, problem, WRONG, backed=True)
 
 
 def _label(pixels, string):
