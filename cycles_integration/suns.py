@@ -17,23 +17,25 @@ from .node_trees import maths, vector_maths
 from .place import Place, own_name
 
 
-def replace_suns(place: Place, image: np.ndarray, most: int | None = None) -> DiscSplit:
-    """Put suns for the lamps of a map (H, W, 3) into the place, in the stead of those before.
+def split_map(image: np.ndarray, most: int | None = None) -> DiscSplit:
+    """Split a map (H, W, 3) into discs for suns and a rest; without discs where there are to be no suns.
 
-    ``most``: so many at most, the strongest; None puts none where Cycles' own sampling of the map does as
-    well (`DiscSplit.helps`); 0 for none. Returns the split, without discs where there are no suns.
+    ``most``: so many at most, the strongest; None gives none where Cycles' own sampling of the map does as
+    well (`DiscSplit.helps`); 0 for none.
     """
+    split = split_into_discs(image) if most is None else split_into_discs(image, most)
+    return split_into_discs(image, 0) if most is None and not split.helps else split
+
+
+def replace_suns(place: Place, split: DiscSplit):
+    """Put suns for the discs of a map, and what they leave of it, into the place, in the stead of others."""
     for thing in list(place.suns.objects):
         bpy.data.lights.remove(thing.data)
-    split = split_into_discs(image) if most is None else split_into_discs(image, most)
-    if most is None and not split.helps:
-        split = split_into_discs(image, 0)
     residual, quiet = (split.residual, split.quiet) if split.discs else (None, None)
     place.sun_residual = blender_images.replace_image(place.sun_residual, "Panorama Sun Residual", residual)
     place.sun_quiet = blender_images.replace_image(place.sun_quiet, "Panorama Sun Quiet", quiet)
     for number, disc in enumerate(split.discs):
         _sun(place, number, disc)
-    return split
 
 
 def radiance_of_suns(place: Place, tree: bpy.types.NodeTree, direction: bpy.types.NodeSocket):

@@ -8,12 +8,14 @@ from . import (
     clipped_light,
     draw_shape,
     light,
+    long_work,
     pick_points,
     picking,
     pictures,
     placing,
     probes,
     properties,
+    render_job,
     render_presets,
     set_files,
     sun_picker,
@@ -35,6 +37,7 @@ OPERATORS = (
     surfaces,
     viewing,
     light,
+    long_work,
     clipped_light,
     pictures,
     render_presets,
@@ -54,6 +57,8 @@ def register():
 
 def unregister():
     """Take them back, in reverse."""
+    render_job.unregister()
+    long_work.unregister()
     for module in reversed(OPERATORS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)

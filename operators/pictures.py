@@ -3,11 +3,11 @@
 import contextlib
 
 import bpy
-from bpy_extras.io_utils import ExportHelper
 
 from ..cycles_integration.place import place_of
 from ..cycles_integration.rendering import Picture, panorama_camera, render_picture, set_up_picture
-from . import progress
+from . import progress, render_job
+from .long_work import LongExport
 from .reporting import Reporting, possible
 
 
@@ -35,7 +35,8 @@ class PANORAMA_OT_set_up_picture(_ThroughCamera, bpy.types.Operator):
 
 
 class PANORAMA_OT_render_frame(_ThroughCamera, bpy.types.Operator):
-    """Render the new objects into the photograph through the scene's camera"""
+    """Render the new objects into the photograph through the scene's camera. Esc cancels and takes the set-up
+    of render layers and compositor back"""
 
     bl_idname = "panorama.render_frame"
     bl_label = "Render Frame"
@@ -54,18 +55,36 @@ class PANORAMA_OT_render_frame(_ThroughCamera, bpy.types.Operator):
             return f"Wrote {self.filepath}"
         with resolution_kept(scene):
             set_up_picture(scene, scene.camera, picture)
-        bpy.ops.render.render("EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT")
+        if bpy.app.background:
+            bpy.ops.render.render()
+        else:
+            render_job.start(self.bl_idname)
         return f"{picture.width} × {picture.height}, {picture.samples} samples, method {picture.method}"
 
 
-class PANORAMA_OT_render_panorama(Reporting, ExportHelper, bpy.types.Operator):
-    """Render the whole panorama with the new objects to a float OpenEXR file; Blender waits meanwhile"""
+def render_panorama(scene, tell, path, width):
+    """The long part of Render Panorama -> what was written; the scene is set up for its own camera again."""
+    tell("rendering")
+    own_camera, own_picture = scene.camera, frame(scene)
+    width = width or place_of(scene).image.size[0]
+    with resolution_kept(scene):
+        try:
+            with panorama_camera(scene) as camera:
+                render_picture(scene, camera, picture_of(scene, width, width // 2), path)
+        finally:
+            scene.camera = own_camera
+        if own_camera is not None:
+            set_up_picture(scene, own_camera, own_picture)
+    return f"Wrote {path}: {width} × {width // 2}"
+
+
+class PANORAMA_OT_render_panorama(LongExport, bpy.types.Operator):
+    """Render the whole panorama with the new objects to a float OpenEXR file, while you can go on working.
+    Esc cancels"""
 
     bl_idname = "panorama.render_panorama"
     bl_label = "Render Panorama"
 
-    filename_ext = ".exr"
-    filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
     width: bpy.props.IntProperty(
         name="Width",
         description="Width of the panorama [pixels], its height is half of it; 0: as wide as the photograph",
@@ -75,25 +94,16 @@ class PANORAMA_OT_render_panorama(Reporting, ExportHelper, bpy.types.Operator):
         step=2,
     )
 
-    @classmethod
-    def poll(cls, context):
-        """There must be maps."""
-        return possible(cls, progress.maps_missing(context.scene))
+    long_part = staticmethod(render_panorama)
+    missing = staticmethod(progress.maps_missing)
 
-    def work(self, context):
-        """Render, then set the scene up for its own camera again."""
-        scene = context.scene
-        own_camera, own_picture = scene.camera, frame(scene)
-        width = self.width or place_of(scene).image.size[0]
-        with resolution_kept(scene):
-            try:
-                with panorama_camera(scene) as camera:
-                    render_picture(scene, camera, picture_of(scene, width, width // 2), self.filepath)
-            finally:
-                scene.camera = own_camera
-            if own_camera is not None:
-                set_up_picture(scene, own_camera, own_picture)
-        return f"Wrote {self.filepath}: {width} × {width // 2}"
+    def inputs(self, context):
+        """File and size."""
+        return {"path": self.path(), "width": self.width}
+
+    def apply(self, scene, found):
+        """The scene stays."""
+        return found
 
 
 def frame(scene) -> Picture:
