@@ -37,7 +37,6 @@ OPERATORS = (
     surfaces,
     viewing,
     light,
-    long_work,
     clipped_light,
     pictures,
     render_presets,
