@@ -138,8 +138,11 @@ class PickTool(tools.Tool):
 
     def _drag(self, on, xy, event):
         if event.type in ("ESC", "RIGHTMOUSE") and event.value in PRESSES:
+            held = self.dragged
             self.undo()
             self._future.clear()
+            if self.editing.has(held):
+                self.editing.select(held)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
             self.dragged = None
             if self._past and self._past[-1].copied == self.editing.copied:

@@ -32,6 +32,11 @@ class PicksEditing:
         """The point of (pick, point)."""
         return self.copied.picks[index[0]].points[index[1]]
 
+    def has(self, index) -> bool:
+        """Whether there is a point (pick, point), picked or not."""
+        pick, point = index
+        return pick < len(self.copied.picks) and point < len(self.copied.picks[pick].points)
+
     def select(self, index):
         """Select (pick, point), and fill its pick."""
         self.target, self.selected = index

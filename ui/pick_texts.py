@@ -7,7 +7,7 @@ from . import drawing
 from .texts import LETTER
 
 PLAIN, GOOD, WARNING, ERROR = (1, 1, 1, 1), (0.6, 1, 0.6, 1), (1, 0.8, 0.3, 1), (1, 0.5, 0.4, 1)
-TEXT, LINE, MARGIN = 12, 18, 16
+TEXT, LINE, MARGIN = 12, 24, 16
 """Size of letters, distance of lines, and from the border [px at a UI scale of 1]."""
 
 
@@ -20,7 +20,9 @@ def draw(context, tool, factor):
         (part, colour) for line, colour in lines(tool, factor) for part in textwrap.wrap(line, letters)
     ]
     for row, (line, colour) in enumerate(reversed(wrapped)):
-        drawing.text((left + MARGIN * scale, bottom + (MARGIN + row * LINE) * scale), line, colour, TEXT)
+        drawing.text(
+            (left + MARGIN * scale, bottom + (MARGIN + row * LINE) * scale), line, colour, TEXT, backed=True
+        )
 
 
 def lines(tool, factor=0):

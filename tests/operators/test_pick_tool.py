@@ -98,6 +98,7 @@ def test_drag_moves_live_and_escape_puts_the_point_back():
     for kind in ("ESC", "RIGHTMOUSE"):
         assert mouse(tool, (0.6, 0.8), kind) == "RUNNING"
         assert points(tool) == [pytest.approx(uv) for uv in RUG]
+        assert tool.editing.active == (0, 0)
         mouse(tool, RUG[0], "LEFTMOUSE")
         mouse(tool, (0.6, 0.8))
     mouse(tool, (0.6, 0.8), "LEFTMOUSE", "RELEASE")
