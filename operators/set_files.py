@@ -60,7 +60,7 @@ class PANORAMA_OT_drop_image(_Opening, bpy.types.Operator):
     """Open a panorama that was dropped into the window: with its depth and calibration where it has them"""
 
     bl_idname = "panorama.drop_image"
-    bl_label = "Open Dropped Panorama"
+    bl_label = "Open as HDR Panorama"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
     filter_glob: bpy.props.StringProperty(default="*.exr;*.hdr", options={"HIDDEN"})

@@ -1,7 +1,8 @@
 """What may be dropped from a File Browser or the desktop on a 3D View or an Image Editor.
 
-Blender asks by a small menu which of several handlers is meant: of an image, this one or its own, which makes
-an Empty or a plain image of it. A handler is told where something is dropped, but not what.
+Where several handlers take a file, Blender asks by a small menu which one is meant, so an HDR image may
+become the panorama or, by Blender's own handlers, an Empty or a plain image. No handler can decide that: each
+is told where something is dropped, but not what.
 """
 
 import bpy
