@@ -61,6 +61,7 @@ vec3 look_up(vec3 direction, ivec2 size)
 void main()
 {
   ivec2 size = textureSize(panorama, 0);
+  vec2 ndc = place.xy / place.z;
   vec2 pixel = vec2(eye_x.w, eye_y.w);
 
   /* Where a pixel covers several of the image's, the mean of a grid of points in it. */

@@ -1,7 +1,7 @@
-/* A triangle that covers the region, at the far plane: whatever has been drawn lies before it. */
+/* What the panorama is drawn on, in clip space: all of the region, or the floor far away. */
 
 void main()
 {
-  ndc = corner;
-  gl_Position = vec4(corner, 1.0, 1.0);
+  place = corner.xyw;
+  gl_Position = corner;
 }

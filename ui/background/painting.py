@@ -18,7 +18,7 @@ from mathutils import Color, Matrix
 
 from ...ibl_toolkit.views import View
 from ...operators.canvas import calibration_of
-from . import shader, theme
+from . import far_floor, shader, theme
 
 SHOWN_IN = ("WIREFRAME", "SOLID", "MATERIAL")
 """Shading modes; in the rendered one the World shows the panorama."""
@@ -26,7 +26,6 @@ EMPTY, FILLED, ANYWHERE = "LESS_EQUAL", "GREATER", "NONE"
 """Depth tests of something at the far plane: where nothing is before it, where something is, no test."""
 ROUNDING = 0.005
 """Beyond the rounding to 8 bits, and the noise, that Blender's overlays add to the theme's colour."""
-COVER = np.array([(-1, -1, 1), (3, -1, 1), (-1, 3, 1)], np.float32)
 _scene_layer = None
 
 
@@ -49,11 +48,12 @@ def paint():
     fill = theme.background_of(context.space_data, context.scene, context.preferences.themes)
     with _state_given_back():
         for where, blend, share in passes(context.space_data.shading, context.scene.panorama_view.opacity):
-            gpu.state.depth_test_set(where)
-            gpu.state.blend_set(blend)
-            with layer.bind():
-                shader.draw(view, texture, gain, share)
-            _take_away(fill, share)
+            for world, clip in _surfaces(where, context):
+                gpu.state.depth_test_set(where)
+                gpu.state.blend_set(blend)
+                with layer.bind():
+                    shader.draw(view, texture, gain, share, clip)
+                _take_away(fill, share, world)
 
 
 def forget_scene_layer() -> gpu.types.GPUFrameBuffer | None:
@@ -94,16 +94,28 @@ def passes(shading, opacity: float) -> list[tuple[str, str, float]]:
     return behind
 
 
-def _take_away(fill, share):
+def _surfaces(where, context):
+    """Triangles to draw on: in the world (3 n, 3) [m], None at the far plane; in clip space (3 n, 4)."""
+    yield None, shader.COVER
+    region_data = context.region_data
+    if where == EMPTY and far_floor.is_hidden_by_grid(context.space_data, region_data):
+        pixel = 2 / (region_data.window_matrix[1][1] * context.region.height)
+        world = far_floor.corners(region_data.view_matrix.inverted().translation, pixel)
+        yield world, np.insert(world, 3, 1, axis=1) @ np.array(region_data.perspective_matrix).T
+
+
+def _take_away(fill, share, world):
     """Subtract a share of the theme's colour from the overlays, which are the framebuffer in use."""
     plain = gpu.shader.from_builtin("UNIFORM_COLOR")
     gpu.state.blend_set("SUBTRACT")
     excess = Color([share * (component + ROUNDING) for component in fill])
     plain.uniform_float("color", (*excess.from_scene_linear_to_srgb(), 0.0))
     with gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
-        gpu.matrix.load_identity()
-        gpu.matrix.load_projection_matrix(Matrix.Identity(4))
-        batch_for_shader(plain, "TRIS", {"pos": COVER}).draw(plain)
+        if world is None:
+            gpu.matrix.load_identity()
+            gpu.matrix.load_projection_matrix(Matrix.Identity(4))
+            world = shader.COVER[:, :3]
+        batch_for_shader(plain, "TRIS", {"pos": np.asarray(world, np.float32)}).draw(plain)
 
 
 @contextmanager

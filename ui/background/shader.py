@@ -11,23 +11,24 @@ from gpu_extras.batch import batch_for_shader
 NAME = "background"
 CONSTANTS = ("eye", "eye_x", "eye_y", "ray", "ray_x", "ray_y", "up")
 """Push constants, a vec4 each: 112 bytes of the 128 that every graphics card has."""
-COVER = np.array([(-1, -1), (3, -1), (-1, 3)], np.float32)
-"""Corners of a triangle that covers all of x, y in [-1, 1]."""
+COVER = np.array([(-1, -1, 1, 1), (3, -1, 1, 1), (-1, 3, 1, 1)], np.float32)
+"""Corners of a triangle, in clip space, that covers the region at the far plane."""
 _built = None
 
 
-def draw(view, texture: gpu.types.GPUTexture, gain: float, share: float):
-    """Draw the panorama over the whole framebuffer in use, in the state of blending and depth test in use.
+def draw(view, texture: gpu.types.GPUTexture, gain: float, share: float, corners=COVER):
+    """Draw the panorama into the framebuffer in use, in the state of blending and depth test in use.
 
     view: an `ibl_toolkit.views.View`. texture: the panorama, scene-linear. gain: what its radiance is
-    multiplied by. share: what the result, alpha included, is multiplied by.
+    multiplied by. share: what the result, alpha included, is multiplied by. corners (3 n, 4): triangles in
+    clip space on which it is drawn.
     """
-    shader, batch = _shader_and_batch()
+    shader = _shader()
     shader.bind()
     for name, value in constants(view, gain, share).items():
         shader.uniform_float(name, value)
     shader.uniform_sampler("panorama", texture)
-    batch.draw(shader)
+    batch_for_shader(shader, "TRIS", {"corner": np.asarray(corners, np.float32)}).draw(shader)
 
 
 def constants(view, gain: float, share: float) -> dict[str, tuple[float, ...]]:
@@ -49,20 +50,19 @@ def is_built() -> bool:
     return _built is not None
 
 
-def _shader_and_batch():
+def _shader():
     global _built
     if _built is None:
-        shader = gpu.shader.create_from_info(_description())
-        _built = shader, batch_for_shader(shader, "TRIS", {"corner": COVER})
+        _built = gpu.shader.create_from_info(_description())
     return _built
 
 
 def _description():
     """What OpenGL, Vulkan and Metal each make their shader of."""
     between = gpu.types.GPUStageInterfaceInfo("panorama_background")
-    between.smooth("VEC2", "ndc")
+    between.smooth("VEC3", "place")
     info = gpu.types.GPUShaderCreateInfo()
-    info.vertex_in(0, "VEC2", "corner")
+    info.vertex_in(0, "VEC4", "corner")
     info.vertex_out(between)
     info.fragment_out(0, "VEC4", "colour")
     info.sampler(0, "FLOAT_2D", "panorama")

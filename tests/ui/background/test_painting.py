@@ -80,12 +80,12 @@ def test_colour_behind_all_objects(view_3d):
     bpy, space = view_3d
     scene, themes = bpy.context.scene, bpy.context.preferences.themes
     gradients = themes[0].view_3d.space.gradients
-    gradients.background_type, gradients.high_gradient = "SINGLE_COLOR", (0.5, 0.25, 0)
-    gradients.gradient = (0, 0.5, 0.04045)
+    gradients.background_type, gradients.high_gradient = "SINGLE_COLOR", (0.4, 0.2, 0)
+    gradients.gradient = (0, 0.6, 0.2)
     in_theme = background_of(space, scene, themes)
-    assert in_theme == pytest.approx((0.214041, 0.0508761, 0), abs=1e-5)  # IEC 61966-2-1 of those values
+    assert in_theme == pytest.approx((0.132868, 0.033105, 0), abs=1e-5)  # IEC 61966-2-1 of those values
     gradients.background_type = "LINEAR"
-    assert background_of(space, scene, themes) == pytest.approx((0.214041, 0.214041, 0.0031308), abs=1e-5)
+    assert background_of(space, scene, themes) == pytest.approx((0.132868, 0.318547, 0.033105), abs=1e-5)
     gradients.background_type = "SINGLE_COLOR"
     space.shading.type, space.shading.background_type = "SOLID", "VIEWPORT"
     space.shading.background_color = 0.25, 0.5, 0.75
