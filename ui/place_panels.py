@@ -68,12 +68,20 @@ class PANORAMA_PT_calibration(Step, bpy.types.Panel):
         self.say(context, missing)
         if not missing:
             self.say(context, state.problem, "ERROR")
+        self.draw_pick_button(state)
         self.layout.operator("panorama.calibrate", icon="ORIENTATION_GIMBAL")
         if not state.result.is_solved:
             return
         if state.calibration_is_old:
             self.say(context, "The picks have changed: calibrate again", "FILE_REFRESH")
         self.draw_result(context, state.result, by_length)
+
+    def draw_pick_button(self, state):
+        """Begin with a floor rectangle, or go on with what is picked."""
+        begin = "SELECTED" if state.picks else "RECTANGLE"
+        text = "Pick Points" if state.picks else "Pick Floor Rectangle"
+        button = self.layout.operator("panorama.pick_points", text=text, icon="RESTRICT_SELECT_OFF")
+        button.kind, button.plane = begin, "FLOOR"
 
     def draw_result(self, context, result, by_length):
         """The figures, with one standard deviation for half a pixel of click error."""
@@ -97,7 +105,7 @@ class PANORAMA_PT_picks(InSidebar, bpy.types.Panel):
 
     def draw(self, context):
         """The list."""
-        paragraph(self.layout, context, "Set points in the Image Editor's sidebar, or type them here")
+        paragraph(self.layout, context, "The list's + begins a pick on the panorama. Points can be typed, too")
         draw_picks(self.layout, context.scene.panorama_set)
 
 
