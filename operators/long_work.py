@@ -15,10 +15,11 @@ from pathlib import Path
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
+from ..ibl_toolkit.images.atomic import refuse_unwritable
 from . import canvas, child_job, tools
 from .child_job import FILE, JOB, Job, save_edited_images
 from .child_process import ChildProcess
-from .reporting import Reporting, possible
+from .reporting import Reporting, possible, refuse_linked
 
 POLL_EVERY = 0.1
 """[s]"""
@@ -31,7 +32,7 @@ class Running:
     def __init__(self, label: str, scene: bpy.types.Scene, child: ChildProcess, depends_on: str):
         self.label, self.child, self.depends_on = label, child, depends_on
         self.scene_uid = scene.session_uid  # a scene may be renamed meanwhile
-        self.timer = None
+        self.timer, self.shown = None, ""
 
     def text(self) -> str:
         """What it is doing, for the status bar."""
@@ -91,6 +92,7 @@ class LongWork(Reporting):
         global _running
         scene = context.scene
         try:
+            refuse_linked(scene)
             child = start_child(self.long_part, scene, self.inputs(context))
         except (ValueError, OSError, RuntimeError) as error:
             self.report({"ERROR"}, " ".join(str(error).split()))
@@ -113,7 +115,8 @@ class LongWork(Reporting):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         _running.child.read_progress()
-        show(context)
+        if _running.text() != _running.shown:
+            show(context)
         return self._finish(context) if _running.child.is_done() else {"PASS_THROUGH"}
 
     def cancel(self, context):
@@ -152,8 +155,10 @@ class LongExport(LongWork, ExportHelper):
     filter_glob: bpy.props.StringProperty(default="*.exr", options={"HIDDEN"})
 
     def path(self) -> str:
-        """The file, absolute."""
-        return bpy.path.abspath(self.filepath)
+        """The file, absolute. Raises OSError where it cannot be written: better told before than after."""
+        path = bpy.path.abspath(self.filepath)
+        refuse_unwritable(path)
+        return path
 
     def invoke(self, context, event):
         """Ask for the file, or start."""
@@ -212,6 +217,7 @@ def command(folder: str) -> list[str]:
 def show(context):
     """Show in the status bar what runs, unless a tool shows its keys there."""
     if tools.active_tool() is None:
+        _running.shown = _running.text()
         context.workspace.status_text_set(_draw_status)
 
 

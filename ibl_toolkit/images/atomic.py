@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -32,6 +33,13 @@ def replacing(path):
     finally:
         temporary.unlink(missing_ok=True)
         _unfinished.discard(temporary)
+
+
+def refuse_unwritable(path):
+    """Raise OSError where no file can be written to `path`: asked before long work that ends with one."""
+    handle, name = tempfile.mkstemp(prefix=".", suffix=".part", dir=Path(path).absolute().parent)
+    os.close(handle)
+    os.unlink(name)
 
 
 def discard_unfinished():

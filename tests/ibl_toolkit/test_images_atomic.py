@@ -3,6 +3,7 @@
 import pytest
 
 from expanded_panoramas.ibl_toolkit.images import replacing
+from expanded_panoramas.ibl_toolkit.images.atomic import refuse_unwritable
 
 
 @pytest.fixture
@@ -47,3 +48,12 @@ def test_two_writers_do_not_meet(target):
         first.write_text("first")
         second.write_text("second")
     assert target.read_text() == "first"
+
+
+def test_where_no_file_can_be_written(tmp_path):
+    refuse_unwritable(tmp_path / "new.exr")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "file").touch()
+    for target in (tmp_path / "file" / "new.exr", tmp_path / "gone" / "new.exr"):
+        with pytest.raises(OSError, match=target.parent.name):
+            refuse_unwritable(target)

@@ -286,7 +286,7 @@ def closed_folder(request, tmp_path):
 def test_writing_to_a_closed_folder(fresh_blend, tmp_path, closed_folder):
     bpy = fresh_blend
     state = built(bpy, tmp_path)
-    before = state.image_path, state.image, {o.name for o in bpy.context.scene.objects}
+    before = state.image_path, state.image, [o.name for o in bpy.context.scene.objects]
     target = str(closed_folder / "out.exr")
     calls = (
         lambda: bpy.ops.panorama.restore_light(filepath=target, known="IRRADIANCE", value=1e4),
@@ -297,7 +297,7 @@ def test_writing_to_a_closed_folder(fresh_blend, tmp_path, closed_folder):
     for call in calls:
         with pytest.raises(RuntimeError, match=closed_folder.name):
             call()
-    assert (state.image_path, state.image, {o.name for o in bpy.context.scene.objects}) == before
+    assert (state.image_path, state.image, [o.name for o in bpy.context.scene.objects]) == before
 
 
 def clip(bpy):
