@@ -2,6 +2,9 @@
 
 import bpy
 
+AT_MOUSE = "INVOKE_REGION_WIN"
+"""Blender's own entries before ours run without the mouse; ours want to know where it points in the view."""
+
 
 class PANORAMA_MT_add(bpy.types.Menu):
     """What a place needs, or can give."""
@@ -11,7 +14,7 @@ class PANORAMA_MT_add(bpy.types.Menu):
     def draw(self, context):
         """Sample balls, cameras, suns, the sample room."""
         layout = self.layout
-        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator_context = AT_MOUSE
         ball = layout.operator("panorama.add_ball", text="Mirror Ball", icon="SHADING_RENDERED")
         ball.kind = "MIRROR"
         layout.operator("panorama.add_ball", text="Matte Ball", icon="SHADING_SOLID").kind = "MATTE"
@@ -37,6 +40,7 @@ def draw_in_object_menu(menu, context):
     """The entry in the objects' context menu, once there is a place."""
     if context.scene.panorama_place.origin is not None:
         menu.layout.separator()
+        menu.layout.operator_context = AT_MOUSE
         menu.layout.operator("panorama.send_to_place", icon="TRACKER")
 
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 class Layout:
     """Notes the menus and operators that an entry names, and refuses those that do not exist."""
 
-    operator_context = ""
+    operator_context = "EXEC_REGION_WIN"  # as Blender's own entries leave it
 
     def __init__(self, bpy):
         self.bpy, self.named = bpy, []
@@ -19,6 +19,7 @@ class Layout:
         self.named.append(name)
 
     def operator(self, name, text="", icon="NONE"):
+        assert self.operator_context == "INVOKE_REGION_WIN"  # the mouse says where
         assert name.partition(".")[2] in dir(self.bpy.ops.panorama), name
         icons = self.bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
         assert icon in icons, icon
