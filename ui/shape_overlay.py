@@ -16,6 +16,8 @@ BUILT_ALPHA = 0.55
 WRONG = (1, 0.45, 0.4, 1)
 BESIDE = np.array([16.0, 12.0])
 """Where text stands from what it is about [px of a plain screen]."""
+LETTER = (8, 14)
+"""Room for a letter [px of a plain screen]."""
 
 
 def draw(context, canvas):
@@ -39,16 +41,17 @@ def _draw_tool(canvas, tool):
     drawing.lines(_curves(canvas, shape.stand.from_origin(segments)), colour, 2)
     for point in shape.points:
         drawing.dots(_pixels(canvas, shape, (*point, 0)), colour)
-    for middle, length in sizes(shape.flat, points, base):
-        _label(_pixels(canvas, shape, (*middle, 0)), tool.lengths.text(length))
+    said = [((*middle, 0), length) for middle, length in sizes(shape.flat, points, base)]
     if height is not None:
         edge = tool.top[:2] if tool.top is not None else base.outline[0]
-        _label(_pixels(canvas, shape, (*edge, height)), tool.lengths.text(height))
+        said.append(((*edge, height), height))
+    texts = [(_pixels(canvas, shape, point), tool.lengths.text(length)) for point, length in said]
+    _draw_labels(reversed(texts))
 
 
 def _draw_at_mouse(tool):
     problem = tool.problem or tool.preview()[3]
-    at = tool.xy + BESIDE * drawing.scale()
+    at = tool.xy + 2 * BESIDE * drawing.scale()
     if tool.typed:
         drawing.text(at, tool.typed, size=15, backed=True)
         at = at + np.array([0, 32]) * drawing.scale()
@@ -56,8 +59,15 @@ def _draw_at_mouse(tool):
         drawing.text(at, problem, WRONG, backed=True)
 
 
-def _label(pixels, string):
-    drawing.text(pixels + BESIDE / 2 * drawing.scale(), string)
+def _draw_labels(texts):
+    """Draw (pixels (2,), string), the first ones where there isn't room for all."""
+    taken = []
+    for pixels, string in texts:
+        low = pixels + BESIDE / 2 * drawing.scale()
+        high = low + np.array([LETTER[0] * len(string), LETTER[1]]) * drawing.scale()
+        if not any((low < other_high).all() and (other_low < high).all() for other_low, other_high in taken):
+            drawing.text(low, string)
+            taken.append((low, high))
 
 
 def _pixels(canvas, shape, point):
