@@ -105,7 +105,7 @@ class PANORAMA_PT_picks(InSidebar, bpy.types.Panel):
 
     def draw(self, context):
         """The list."""
-        paragraph(self.layout, context, "The list's + begins a pick on the panorama. Points can be typed, too")
+        paragraph(self.layout, context, "The list's + begins a pick in the view. Points can be typed, too")
         draw_picks(self.layout, context.scene.panorama_set)
 
 
