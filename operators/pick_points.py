@@ -21,9 +21,13 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
     bl_idname = "panorama.pick_points"
     bl_label = "Pick Points"
 
-    kind: bpy.props.EnumProperty(name="Kind", items=(SELECTED, *PICK_KINDS))
-    plane: bpy.props.EnumProperty(name="Plane", items=PLANES)
-    axis: bpy.props.EnumProperty(name="Axis", items=AXES)
+    kind: bpy.props.EnumProperty(
+        name="Kind", description="What the next clicks are points of", items=(SELECTED, *PICK_KINDS)
+    )
+    plane: bpy.props.EnumProperty(name="Plane", description="Where a new rectangle lies", items=PLANES)
+    axis: bpy.props.EnumProperty(
+        name="Axis", description="Axis of the world that new floor lines follow", items=AXES
+    )
 
     @classmethod
     def poll(cls, context):
