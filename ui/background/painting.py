@@ -18,6 +18,7 @@ from mathutils import Color, Matrix
 
 from ...ibl_toolkit.views import View
 from ...operators.canvas import calibration_of
+from ...operators.tools import active_tool
 from . import far_floor, shader, theme
 
 SHOWN_IN = ("WIREFRAME", "SOLID", "MATERIAL")
@@ -26,6 +27,8 @@ EMPTY, FILLED, ANYWHERE = "LESS_EQUAL", "GREATER", "NONE"
 """Depth tests of something at the far plane: where nothing is before it, where something is, no test."""
 ROUNDING = 0.005
 """Beyond the rounding to 8 bits, and the noise, that Blender's overlays add to the theme's colour."""
+AT_ORIGIN = 0.01
+"""An eye so many camera heights from the panorama's origin is at it."""
 _scene_layer = None
 
 
@@ -46,8 +49,9 @@ def paint():
     texture = gpu.texture.from_image(image)
     gain = 2.0**context.scene.panorama_view.exposure
     fill = theme.background_of(context.space_data, context.scene, context.preferences.themes)
+    shown = passes(context.space_data.shading, context.scene.panorama_view.opacity, covers_meshes(view))
     with _state_given_back():
-        for where, blend, share in passes(context.space_data.shading, context.scene.panorama_view.opacity):
+        for where, blend, share in shown:
             for world, clip in _surfaces(where, context):
                 gpu.state.depth_test_set(where)
                 gpu.state.blend_set(blend)
@@ -80,15 +84,23 @@ def view_of(scene, region, region_data) -> View:
     return View.from_matrices(*matrices, *calibration_of(scene), (region.width, region.height))
 
 
-def passes(shading, opacity: float) -> list[tuple[str, str, float]]:
+def covers_meshes(view) -> bool:
+    """Whether a tool needs the picture more than the meshes that stand where it shows what they are."""
+    at_origin = np.linalg.norm(view.eye) <= AT_ORIGIN * view.camera_height
+    return active_tool() is not None and view.is_perspective and bool(at_origin)
+
+
+def passes(shading, opacity: float, covers=False) -> list[tuple[str, str, float]]:
     """How often the panorama is drawn: where, with which blending, and with which share of it.
 
     Wires have nothing behind them but the theme's colour, with which the panorama is mixed. Behind what X-ray
-    makes translucent lies the share of it that one surface lets pass.
+    makes translucent lies the share of it that one surface lets pass. It may also cover what is filled.
     """
     if shading.type == "WIREFRAME":
         return [(ANYWHERE, "NONE", opacity)]
     behind = [(EMPTY, "NONE", 1.0)]
+    if covers:
+        return [*behind, (FILLED, "NONE", 1.0)]
     if shading.type == "SOLID" and shading.show_xray and shading.xray_alpha < 1:
         behind.append((FILLED, "ADDITIVE_PREMULT", 1.0 - shading.xray_alpha))
     return behind
