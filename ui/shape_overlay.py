@@ -1,4 +1,7 @@
-"""Shapes over the panorama: the one being drawn, with its sizes, and in Image Editors the built ones."""
+"""Shapes over the panorama: the one being drawn, with its sizes, and the outlines of those that are built.
+
+In 3D Views these are meshes; but while a tool runs there, the panorama covers them.
+"""
 
 import numpy as np
 
@@ -22,10 +25,10 @@ LETTER = (8, 14)
 
 def draw(context, canvas):
     """Draw the shapes in a region that shows the panorama."""
-    if isinstance(canvas, ImageCanvas) and context.space_data.overlay.show_overlays:
+    tool = active_tool()
+    if context.space_data.overlay.show_overlays and (tool is not None or isinstance(canvas, ImageCanvas)):
         for role, segments in built_lines(context.scene).items():
             drawing.lines(_curves(canvas, segments), (*COLOURS[role], BUILT_ALPHA), 1)
-    tool = active_tool()
     if isinstance(tool, DrawTool):
         _draw_tool(canvas, tool)
         if tool.region == context.region.as_pointer():
