@@ -41,7 +41,7 @@ def test_a_side_is_a_curve_of_the_flat_image(drawn):
     hand.move((3, -1))
     found = drawn(hand.tool, FLAT)
     middle, ends = hand.pixels((1, 0, 0)), [hand.pixels((1, y, 0)) for y in (-1, 1)]
-    assert np.nanmin(np.linalg.norm(found.lines[0] - middle, axis=1)) < 2
+    assert np.nanmin(np.linalg.norm(found.lines[0] - middle, axis=1)) < 8  # px: a step is half a degree
     assert np.linalg.norm(np.mean(ends, axis=0) - middle) > 100
     assert len(found.dots) == 3
     assert found.texts == ["2 m"] * 4
