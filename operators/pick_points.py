@@ -1,6 +1,9 @@
 """The operator that runs the picking tool, and writes what was picked."""
 
+import threading
+
 import bpy
+import numpy as np
 
 from ..cycles_integration.blender_images import array_from_image
 from . import progress, solving, tools
@@ -11,6 +14,10 @@ from .picks_editing import PicksEditing
 from .properties import AXES, PICK_KINDS, PLANES
 from .reporting import possible
 
+BRIGHTEST = 60000
+"""What half a float can hold; a sun is no brighter for the magnifier."""
+BAND, PATIENCE = 64, 0.3
+"""Rows converted at a time, and how long the tool waits for its first pixels before it begins [s]."""
 SELECTED = ("SELECTED", "Selected Pick", "The pick that is selected in the list")
 
 
@@ -50,23 +57,27 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
         tool = PickTool(
             editing,
             image.size,
-            image=array_from_image(image),
             lengths=Lengths.of_scene(scene),
             ui_scale=context.preferences.system.ui_scale,
         )
+        pixels = threading.Thread(target=_give_pixels, args=(tool, array_from_image(image)), daemon=True)
+        pixels.start()
+        pixels.join(PATIENCE)
         tool.scene_name, tool.image_path, tool.settings = scene.name, state.image_path, _settings(state)
         return tool
 
     def modal(self, context, event):
         """Follow the sidebar, let go where the scene or its panorama is another, and work on."""
         tool = self.tool
-        if context.scene.name != tool.scene_name:
-            return {"PASS_THROUGH"}
-        state = context.scene.panorama_set
-        if state.image_path != tool.image_path and tool is tools.active_tool():
-            self.report({"WARNING"}, "Pick Points ended: the scene has another panorama")
-            tools.close_tool()
-        _follow(tool, state)
+        if tool is tools.active_tool():
+            scene = bpy.data.scenes.get(tool.scene_name)
+            if scene is None or scene.panorama_set.image_path != tool.image_path:
+                self.report({"WARNING"}, "Pick Points ended: its scene or panorama is another now")
+                tools.close_tool()
+            elif scene != context.scene:
+                return {"PASS_THROUGH"}
+            else:
+                _follow(tool, scene.panorama_set)
         return super().modal(context, event)
 
     def work(self, context):
@@ -94,6 +105,16 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
         for warning in found.warnings:
             self.report({"WARNING"}, warning)
         return f"Tilt {found.tilt_deg:.2f}° ± {found.uncertainty_tilt_deg:.2f}°"
+
+
+def _give_pixels(tool, pixels):
+    """Give a tool the image (H, W, 3) as half floats, while it already runs: the largest take a second."""
+    halves = np.empty(pixels.shape, np.float16)
+    for row in range(0, len(pixels), BAND):
+        if tools.active_tool() not in (tool, None):
+            return
+        halves[row : row + BAND] = np.minimum(pixels[row : row + BAND], BRIGHTEST)
+    tool.image = halves
 
 
 def _settings(state):

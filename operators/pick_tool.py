@@ -18,7 +18,7 @@ GRAB_PIXELS = 12
 """How near to a point a click takes hold of it [px of the screen at a UI scale of 1]."""
 STILL_PIXELS = 2
 """A press that moves less than this only selects [px of the screen]."""
-SNAP_PIXELS = 8
+SNAP_PIXELS = 6
 """How far from a click corners are looked for [px of the screen at a UI scale of 1] …"""
 SNAP_ROWS = (1.5, 12)
 """… but at least and at most so far [px of the image]."""
