@@ -86,8 +86,9 @@ def view_of(scene, region, region_data) -> View:
 
 def covers_meshes(view) -> bool:
     """Whether a tool needs the picture more than the meshes that stand where it shows what they are."""
+    is_plan = not view.is_perspective
     at_origin = np.linalg.norm(view.eye) <= AT_ORIGIN * view.camera_height
-    return active_tool() is not None and view.is_perspective and bool(at_origin)
+    return active_tool() is not None and bool(is_plan or at_origin)
 
 
 def passes(shading, opacity: float, covers=False) -> list[tuple[str, str, float]]:
