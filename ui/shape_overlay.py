@@ -3,6 +3,8 @@
 In 3D Views these are meshes; but while a tool runs there, the panorama covers them.
 """
 
+import textwrap
+
 import numpy as np
 
 from ..ibl_toolkit.drawing import sizes, wireframe
@@ -13,6 +15,7 @@ from ..operators.draw_tool import DrawTool
 from ..operators.shape_lines import built_lines
 from ..operators.tools import active_tool
 from . import drawing
+from .pick_texts import free_area
 
 COLOURS = {role: tuple(value / 255 for value in colour) for role, colour in ROLE_COLOURS.items()}
 BUILT_ALPHA = 0.55
@@ -21,6 +24,8 @@ BESIDE = np.array([16.0, 12.0])
 """Where text stands from what it is about [px of a plain screen]."""
 LETTER = (8, 14)
 """Room for a letter [px of a plain screen]."""
+LINE, WIDEST = 24, 56
+"""Distance of lines [px of a plain screen], and letters in one."""
 
 
 def draw(context, canvas):
@@ -32,7 +37,7 @@ def draw(context, canvas):
     if isinstance(tool, DrawTool):
         _draw_tool(canvas, tool)
         if tool.region == context.region.as_pointer():
-            _draw_at_mouse(tool)
+            _draw_at_mouse(context, tool)
 
 
 def _draw_tool(canvas, tool):
@@ -52,14 +57,19 @@ def _draw_tool(canvas, tool):
     _draw_labels(reversed(texts))
 
 
-def _draw_at_mouse(tool):
+def _draw_at_mouse(context, tool):
+    """What was typed, and what is wrong, beside the mouse and within the region."""
     problem = tool.problem or tool.preview()[3]
-    at = tool.xy + 2 * BESIDE * drawing.scale()
+    lines = [(line, WRONG) for line in reversed(textwrap.wrap(problem, WIDEST))]
     if tool.typed:
-        drawing.text(at, tool.typed, size=15, backed=True)
-        at = at + np.array([0, 32]) * drawing.scale()
-    if problem:
-        drawing.text(at, problem, WRONG, backed=True)
+        lines.insert(0, (tool.typed, (1, 1, 1, 1)))
+    scale = drawing.scale()
+    rightmost = free_area(context)[1][0] - LETTER[0] * scale * max(
+        (len(line) for line, _ in lines), default=0
+    )
+    left, bottom = tool.xy + 2 * BESIDE * scale
+    for row, (line, colour) in enumerate(lines):
+        drawing.text((min(left, rightmost), bottom + row * LINE * scale), line, colour, backed=True)
 
 
 def _draw_labels(texts):

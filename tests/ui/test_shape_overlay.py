@@ -26,8 +26,10 @@ def drawn(fresh_blend, monkeypatch):
         for kind in (found.lines, found.dots, found.texts):
             kind.clear()
         space = SimpleNamespace(overlay=SimpleNamespace(show_overlays=True))
-        region = SimpleNamespace(as_pointer=lambda: 7)
-        context = SimpleNamespace(scene=fresh_blend.context.scene, space_data=space, region=region)
+        region = SimpleNamespace(as_pointer=lambda: 7, x=0, y=0, width=9999, height=9999)
+        area = SimpleNamespace(regions=[])
+        scene = fresh_blend.context.scene
+        context = SimpleNamespace(scene=scene, space_data=space, area=area, region=region)
         shape_overlay.draw(context, canvas)
         return found
 
