@@ -3,6 +3,12 @@
 import bpy
 from bpy.props import BoolProperty, FloatProperty, PointerProperty
 
+from . import canvas
+
+
+def _shown_otherwise(view, context):
+    canvas.redraw(context)
+
 
 class PanoramaView(bpy.types.PropertyGroup):
     """What the 3D views draw of the panorama, in solid, material preview and wireframe mode."""
@@ -11,6 +17,7 @@ class PanoramaView(bpy.types.PropertyGroup):
         name="Panorama Background",
         description="Show the panorama behind the scene in 3D views; renders are not affected",
         default=True,
+        update=_shown_otherwise,
     )
     exposure: FloatProperty(
         name="Exposure",
@@ -20,6 +27,7 @@ class PanoramaView(bpy.types.PropertyGroup):
         soft_max=8,
         step=10,
         precision=2,
+        update=_shown_otherwise,
     )
     opacity: FloatProperty(
         name="Opacity",
@@ -28,11 +36,13 @@ class PanoramaView(bpy.types.PropertyGroup):
         default=0.5,
         min=0,
         max=1,
+        update=_shown_otherwise,
     )
     show_calibration: BoolProperty(
         name="Calibration",
         description="Draw horizon, vertical planes and picks over the panorama",
         default=True,
+        update=_shown_otherwise,
     )
 
 
