@@ -19,8 +19,10 @@ SAMPLES = 84
 FRAME, CROSS, CORNER = (0, 0, 0, 0.8), (1, 1, 1, 0.7), (1, 0.85, 0.1, 1)
 
 
-def draw(canvas, xy, image, exposure, region_size, snap):
-    """Draw it beside (2,) [px] of a canvas; exposure [EV]; snap: `corner_snap.Snap` of the place under it."""
+def draw(canvas, xy, image, exposure, high, snap):
+    """Draw it beside (2,) [px] of a canvas; exposure [EV]; high: how far to the right and up there is room
+    [px]; snap: the `Snap` of a click there.
+    """
     axes = _axes(canvas, np.asarray(xy, float), image.shape[0])
     if axes is None:
         return
@@ -30,7 +32,7 @@ def draw(canvas, xy, image, exposure, region_size, snap):
     x, y = np.meshgrid(steps, steps)
     colours = _display(sample(image, ahead + x[..., None] * across + y[..., None] * up), exposure)
     beyond, before = np.asarray(xy) + gap, np.asarray(xy) - gap - size
-    low = np.where(beyond + size <= region_size, beyond, before)
+    low = np.where(beyond + size <= high, beyond, before)
     drawing.rectangle(low - 2, low + size + 2, FRAME)
     _draw_picture(low, size, colours)
     middle = low + size / 2

@@ -43,9 +43,9 @@ def _draw_tool(context, canvas, tool):
     pick_texts.draw(context, tool, factor)
     here = tool.region == context.region.as_pointer()
     if here and tool.xy is not None and tool.image is not None and canvas.uv_at(tool.xy) is not None:
-        size = context.region.width, context.region.height
         exposure = context.scene.panorama_view.exposure
-        magnifier.draw(canvas, tool.xy, tool.image, exposure, size, tool.snapped(canvas, tool.xy))
+        _, free = pick_texts.free_area(context)
+        magnifier.draw(canvas, tool.xy, tool.image, exposure, free, tool.snapped(canvas, tool.xy))
 
 
 def _draw_stored(canvas, scene):
