@@ -34,15 +34,16 @@ def _draw_tool(context, canvas, tool):
     live, editing = tool.live, tool.editing
     if live.calibration is not None:
         _draw_planes(canvas, live.calibration.world_from_panorama, 1.0)
-    _draw_picks(canvas, editing.copied, live, editing.target, 1.0)
     factor = _draw_ellipses(canvas, live, (context.region.width, context.region.height))
+    is_here = tool.region == context.region.as_pointer()
+    if is_here or not tool.region:  # where the artist looks, or else everywhere
+        pick_texts.draw(context, tool, factor)
+    _draw_picks(canvas, editing.copied, live, editing.target, 1.0)
     _draw_labels(canvas, editing, live)
     if editing.active is not None:
         place = canvas.pixels_of(np.array(editing.point(editing.active).uv))
         drawing.dots(place, SELECTED, 5)
-    pick_texts.draw(context, tool, factor)
-    here = tool.region == context.region.as_pointer()
-    if here and tool.xy is not None and tool.image is not None and canvas.uv_at(tool.xy) is not None:
+    if is_here and tool.xy is not None and tool.image is not None and canvas.uv_at(tool.xy) is not None:
         exposure = context.scene.panorama_view.exposure
         _, free = pick_texts.free_area(context)
         magnifier.draw(canvas, tool.xy, tool.image, exposure, free, tool.snapped(canvas, tool.xy))
