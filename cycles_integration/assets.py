@@ -8,12 +8,16 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ..ibl_toolkit.images import replacing
 from . import asset_pictures, blender_images, lookup, maps
 from .place import Place
 
 BALLS_FILE = "Sample Balls.blend"
 TAGS = ("panorama", "HDRI", "light probe")
 PICTURE_WIDTH = 256
+CATALOG_FILE = "blender_assets.cats.txt"
+CATALOG_ID, CATALOG = "5d2c0f0e-7a3b-4c57-9c54-3a1f6f5be2a1", "Panorama"
+"""The group under which the Asset Browser lists them."""
 
 
 def write_balls(folder: Path, balls: dict[str, bpy.types.Object]):
@@ -47,6 +51,7 @@ def write_lookup(folder: Path, place: Place) -> str:
 
 def add_library(preferences: bpy.types.Preferences, name: str, folder: Path) -> bool:
     """Make a folder an asset library of this Blender; False where it is one already."""
+    _write_catalog(folder / CATALOG_FILE)
     libraries = preferences.filepaths.asset_libraries
     if any(Path(library.path).resolve() == folder.resolve() for library in libraries if library.path):
         return False
@@ -55,9 +60,18 @@ def add_library(preferences: bpy.types.Preferences, name: str, folder: Path) -> 
     return True
 
 
+def _write_catalog(path):
+    """Name the group of our assets, beside those that the folder has already."""
+    before = path.read_text(encoding="utf-8") if path.exists() else "VERSION 1\n"
+    if CATALOG_ID not in before:
+        line = f"{CATALOG_ID}:{CATALOG}:{CATALOG}\n"
+        with replacing(path) as temporary:
+            temporary.write_text(f"{before.rstrip()}\n\n{line}", encoding="utf-8")
+
+
 def _mark(block, description, picture):
     block.asset_mark()
-    block.asset_data.description = description
+    block.asset_data.description, block.asset_data.catalog_id = description, CATALOG_ID
     block.asset_data.author = "Expanded Panoramas"
     for tag in TAGS:
         block.asset_data.tags.new(tag, skip_if_exists=True)

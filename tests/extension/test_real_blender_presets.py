@@ -66,4 +66,4 @@ def test_assets_lie_in_the_extensions_own_folder(found):
     ours = [path for name, path in found["libraries"] if name == "Expanded Panoramas"]
     assert len(ours) == 1
     assert "/.user/user_default/expanded_panoramas/assets" in ours[0].replace("\\", "/")
-    assert found["files"] == ["Panorama interior.blend", "Sample Balls.blend"]
+    assert found["files"] == ["Panorama interior.blend", "Sample Balls.blend", "blender_assets.cats.txt"]

@@ -48,7 +48,22 @@ def test_asked_twice_it_is_there_once(fresh_blend, tmp_path, libraries):
         bpy.ops.panorama.add_asset_library(directory=str(tmp_path))
     assert len(libraries) == count + 1
     assert libraries[-1].name == "Expanded Panoramas"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["Sample Balls.blend"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "Sample Balls.blend",
+        "blender_assets.cats.txt",
+    ]
+
+
+def test_catalogs_of_the_folder_stay(fresh_blend, tmp_path, libraries):
+    catalogs = tmp_path / "blender_assets.cats.txt"
+    other = "0b8a1e2c-1111-4222-8333-944455556666:Chairs:Chairs"
+    catalogs.write_text(f"VERSION 1\n\n{other}\n", encoding="utf-8")
+    for _ in range(2):
+        fresh_blend.ops.panorama.add_asset_library(directory=str(tmp_path))
+    lines = [
+        line.partition(":")[2] for line in catalogs.read_text(encoding="utf-8").splitlines() if ":" in line
+    ]
+    assert lines == ["Chairs:Chairs", "Panorama:Panorama"]
 
 
 def test_a_package_that_is_no_extension_asks_for_a_folder(fresh_blend, libraries):
