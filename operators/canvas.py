@@ -15,6 +15,8 @@ from ..ibl_toolkit.views import View
 
 UNCALIBRATED = np.eye(3), 1.5
 """How the panorama is shown before it is calibrated: upright, from so high above the floor [m]."""
+FAR = 1e4
+"""How far before its own plane an orthographic view's rays start [m]: it shows what is behind that, too."""
 EDITORS = ("VIEW_3D", "IMAGE_EDITOR")
 
 
@@ -38,7 +40,10 @@ class ViewCanvas:
 
         In a view from beside the panorama it starts there, so it isn't the ray of the picture shown.
         """
-        return self.view.rays_at(np.asarray(xy, np.float64) + 0.5)
+        start, direction = self.view.rays_at(np.asarray(xy, np.float64) + 0.5)
+        if self.view.is_perspective:
+            return start, direction
+        return start - FAR * direction / np.linalg.norm(direction), direction
 
     def curve_of(self, points):
         """A curve's pixels (n, 2) through points (n, 3) of the panorama frame [m]; NaN breaks it."""
