@@ -6,6 +6,9 @@ import pytest
 pytest.importorskip("bpy")
 from drawing_hand import FLAT, STAND, look_from
 
+from expanded_panoramas.ibl_toolkit.views import View
+from expanded_panoramas.operators.canvas import ViewCanvas
+
 BESIDE = look_from((4.0, -7.0, 5.0), (0.5, 0.0, 0.5))
 
 
@@ -16,6 +19,18 @@ def test_a_ray_goes_through_the_point_shown_there(canvas):
     across = np.cross(point[0] - start, direction) / np.linalg.norm(direction)
     assert across == pytest.approx(np.zeros(3), abs=1e-9)
     assert (point[0] - start) @ direction > 0
+
+
+@pytest.mark.parametrize("height", [-1.0, 0.0, 1e-9, 1.0])
+def test_a_plan_meets_the_floor_on_both_sides_of_its_own_plane(height):
+    view_from_world = np.eye(4)
+    view_from_world[2, 3] = -height
+    matrices = np.diag([0.2, 0.2, 0.01, 1]), view_from_world
+    plan = ViewCanvas(
+        View.from_matrices(*matrices, STAND.world_from_panorama, STAND.camera_height, (500, 500))
+    )
+    xy = plan.curve_of(STAND.from_origin(np.array([[1.0, 2.0, 0.0]])))[0]
+    assert STAND.floor_under(*plan.ray_at(xy)) == pytest.approx([1, 2])
 
 
 def test_outside_of_the_image_there_is_no_ray():
