@@ -18,6 +18,8 @@ UNCALIBRATED = np.eye(3), 1.5
 FAR = 1e4
 """How far before its own plane an orthographic view's rays start [m]: it shows what is behind that, too."""
 EDITORS = ("VIEW_3D", "IMAGE_EDITOR")
+NAVIGATION_SIZE = {"VIEW_3D": (95, 245), "IMAGE_EDITOR": (55, 85)}
+"""Of the corner with the buttons that move the view [px at a UI scale of 1]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +110,36 @@ def canvas_under(context, event):
             if region.type == "WINDOW" and _contains(region, event) and not covered:
                 canvas = canvas_of(context, area, region)
                 xy = np.array([event.mouse_x - region.x, event.mouse_y - region.y], float)
+                if on_navigation(context, area, region, xy):
+                    return None
                 return canvas and (canvas, area, region, xy)
     return None
+
+
+def on_navigation(context, area, region, xy) -> bool:
+    """Whether Blender's own buttons to turn, zoom and pan the view are at (2,) [px]: they go on working."""
+    space = area.spaces.active
+    if not (space.show_gizmo and space.show_gizmo_navigate):
+        return False
+    size = np.array(NAVIGATION_SIZE[area.type]) * (context.preferences.system.ui_scale or 1)
+    return bool((np.subtract(free_area(area, region)[1], xy) < size).all())
+
+
+def free_area(area, region):
+    """Lower left and upper right corner ((2,), (2,)) [px] of what no toolbar, sidebar or header covers."""
+    low, high = [0, 0], [region.width, region.height]
+    for other in area.regions:
+        if other.type == "WINDOW" or min(other.width, other.height) <= 1:
+            continue
+        if other.alignment == "LEFT":
+            low[0] = max(low[0], other.x + other.width - region.x)
+        elif other.alignment == "RIGHT":
+            high[0] = min(high[0], other.x - region.x)
+        elif other.alignment == "BOTTOM":
+            low[1] = max(low[1], other.y + other.height - region.y)
+        elif other.alignment == "TOP":
+            high[1] = min(high[1], other.y - region.y)
+    return low, high
 
 
 def redraw(context):

@@ -39,9 +39,7 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         """There must be a panorama, and no other tool."""
-        running = tools.active_tool()
-        reason = f"{running.label} is running: confirm or cancel it first" if running else ""
-        return possible(cls, progress.image_missing(context.scene) or reason)
+        return possible(cls, progress.image_missing(context.scene) or tools.busy())
 
     def make_tool(self, context):
         """A copy of the picks, and of the image's pixels."""

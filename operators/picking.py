@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import conversion
+from . import conversion, tools
 from .properties import PICK_KINDS, SHAPE_KINDS
 from .reporting import Reporting, possible
 
@@ -21,6 +21,8 @@ class PANORAMA_OT_add_pick(Reporting, bpy.types.Operator):
 
     def work(self, context):
         """Append a pick whose points are still to be set."""
+        if tools.busy():
+            raise ValueError(tools.busy())
         state = context.scene.panorama_set
         if self.kind == "LENGTH" and any(pick.kind == "LENGTH" for pick in state.picks):
             raise ValueError("there is a known length already: the scale needs one only")
@@ -59,9 +61,10 @@ class _OnItem(Reporting):
 
     @classmethod
     def poll(cls, context):
-        """There must be something in one of the lists."""
+        """There must be something in one of the lists, and no tool that edits a copy of them."""
         state = context.scene.panorama_set
-        return possible(cls, "" if state.picks or state.shapes else "Add a pick or a shape first")
+        empty = "" if state.picks or state.shapes else "Add a pick or a shape first"
+        return possible(cls, tools.busy() or empty)
 
     def items(self, context):
         """The list, its active index, and that index's property."""

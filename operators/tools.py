@@ -69,6 +69,11 @@ def active_tool() -> Tool | None:
     return _active
 
 
+def busy() -> str:
+    """Why nothing else may change what a tool works on; "" where none runs."""
+    return f"{_active.label} is running: confirm or cancel it first" if _active else ""
+
+
 def close_tool():
     """End the tool that runs, without applying it; its operator goes with the next event."""
     global _active
@@ -95,8 +100,8 @@ class ToolOperator(Reporting):
     def invoke(self, context, event):
         """Begin."""
         global _active
-        if _active is not None:
-            self.report({"ERROR"}, f"{_active.label} is running: confirm or cancel it first")
+        if busy():
+            self.report({"ERROR"}, busy())
             return {"CANCELLED"}
         try:
             self.tool = _active = self.make_tool(context)
@@ -120,6 +125,7 @@ class ToolOperator(Reporting):
         under = canvas.canvas_under(context, event)
         on, xy = (under[0], under[3]) if under else (None, None)
         if on is None and event.type in MOUSE and self.tool.dragged is None:
+            self._leave(context)
             return {"PASS_THROUGH"}
         if event.type == "Z" and event.ctrl and event.value in {"PRESS", "DOUBLE_CLICK"}:
             self.tool.undo(redo=event.shift)
@@ -136,7 +142,14 @@ class ToolOperator(Reporting):
         """Blender ends the operator: another file, or its own end."""
         self._end(context, {"CANCELLED"})
 
+    def _leave(self, context):
+        if self.tool.canvas is not None:
+            self.tool.canvas, self.tool.xy, self.tool.region = None, None, 0
+            canvas.redraw(context)
+
     def _is_navigation(self, event):
+        if event.alt and event.type == "LEFTMOUSE":  # as of a mouse without a middle button
+            return True
         on_number_pad = event.type.startswith("NUMPAD_") and event.type != "NUMPAD_ENTER"
         return event.type in NAVIGATION or (on_number_pad and not self.tool.takes_numbers)
 

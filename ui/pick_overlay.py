@@ -4,7 +4,7 @@ import numpy as np
 
 from ..ibl_toolkit.equirectangular import direction_from_uv, uv_from_direction
 from ..ibl_toolkit.overlay import HORIZON_COLOUR, XZ_COLOUR, YZ_COLOUR
-from ..operators.canvas import calibration_of
+from ..operators.canvas import calibration_of, free_area
 from ..operators.pick_tool import PickTool
 from ..operators.picks_copy import PicksCopy, solve_live
 from ..operators.tools import active_tool
@@ -45,7 +45,7 @@ def _draw_tool(context, canvas, tool):
         drawing.dots(place, SELECTED, 5)
     if is_here and tool.xy is not None and tool.image is not None and canvas.uv_at(tool.xy) is not None:
         exposure = context.scene.panorama_view.exposure
-        _, free = pick_texts.free_area(context)
+        _, free = free_area(context.area, context.region)
         magnifier.draw(canvas, tool.xy, tool.image, exposure, free, tool.snapped(canvas, tool.xy))
 
 

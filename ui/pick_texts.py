@@ -2,6 +2,7 @@
 
 import textwrap
 
+from ..operators.canvas import free_area
 from ..operators.conversion import pick_label
 from . import drawing
 from .texts import LETTER
@@ -14,7 +15,7 @@ TEXT, LINE, MARGIN = 12, 24, 16
 def draw(context, tool, factor):
     """Draw the lines at the lower left of a region; factor: by how much ellipses are enlarged."""
     scale = drawing.scale()
-    (left, bottom), (right, _) = free_area(context)
+    (left, bottom), (right, _) = free_area(context.area, context.region)
     letters = max(int((right - left) / (LETTER * scale * 1.1)) - 4, 24)
     wrapped = [
         (part, colour) for line, colour in lines(tool, factor) for part in textwrap.wrap(line, letters)
@@ -74,21 +75,3 @@ def _scale(tool):
     if tool.typed:
         return f"{name}: {tool.typed}_"
     return f"{name}: {tool.lengths.text(metres)} (type to change)" if metres > 0 else f"{name}: type it"
-
-
-def free_area(context):
-    """Lower left and upper right corner ((2,), (2,)) [px] of what no toolbar, sidebar or header covers."""
-    region = context.region
-    low, high = [0, 0], [region.width, region.height]
-    for other in context.area.regions:
-        if other.type == "WINDOW" or min(other.width, other.height) <= 1:
-            continue
-        if other.alignment == "LEFT":
-            low[0] = max(low[0], other.x + other.width - region.x)
-        elif other.alignment == "RIGHT":
-            high[0] = min(high[0], other.x - region.x)
-        elif other.alignment == "BOTTOM":
-            low[1] = max(low[1], other.y + other.height - region.y)
-        elif other.alignment == "TOP":
-            high[1] = min(high[1], other.y - region.y)
-    return low, high

@@ -1,51 +1,47 @@
-"""What an editor shows where: rays and curves of its pixels."""
+"""What of an editor's region is free for the panorama, and what is left to Blender's own buttons."""
 
-import numpy as np
+from types import SimpleNamespace
+
 import pytest
 
 pytest.importorskip("bpy")
-from drawing_hand import FLAT, STAND, look_from
-
-from expanded_panoramas.ibl_toolkit.views import View
-from expanded_panoramas.operators.canvas import ViewCanvas
-
-BESIDE = look_from((4.0, -7.0, 5.0), (0.5, 0.0, 0.5))
 
 
-@pytest.mark.parametrize("canvas", [FLAT, BESIDE])
-def test_a_ray_goes_through_the_point_shown_there(canvas):
-    point = STAND.from_origin(np.array([[1.0, 0.5, 0.3]]))
-    start, direction = canvas.ray_at(canvas.curve_of(point)[0])
-    across = np.cross(point[0] - start, direction) / np.linalg.norm(direction)
-    assert across == pytest.approx(np.zeros(3), abs=1e-9)
-    assert (point[0] - start) @ direction > 0
+def a_region(kind, alignment, x, y, width, height):
+    return SimpleNamespace(type=kind, alignment=alignment, x=x, y=y, width=width, height=height)
 
 
-@pytest.mark.parametrize("height", [-1.0, 0.0, 1e-9, 1.0])
-def test_a_plan_meets_the_floor_on_both_sides_of_its_own_plane(height):
-    view_from_world = np.eye(4)
-    view_from_world[2, 3] = -height
-    matrices = np.diag([0.2, 0.2, 0.01, 1]), view_from_world
-    plan = ViewCanvas(
-        View.from_matrices(*matrices, STAND.world_from_panorama, STAND.camera_height, (500, 500))
-    )
-    xy = plan.curve_of(STAND.from_origin(np.array([[1.0, 2.0, 0.0]])))[0]
-    assert STAND.floor_under(*plan.ray_at(xy)) == pytest.approx([1, 2])
+def an_area(show=True):
+    window = a_region("WINDOW", "NONE", 100, 50, 1000, 600)
+    regions = [
+        window,
+        a_region("HEADER", "TOP", 100, 620, 1000, 30),
+        a_region("TOOLS", "LEFT", 100, 50, 60, 570),
+        a_region("UI", "RIGHT", 900, 50, 200, 570),
+        a_region("ASSET_SHELF", "BOTTOM", 100, 50, 1000, 1),  # hidden
+    ]
+    space = SimpleNamespace(show_gizmo=True, show_gizmo_navigate=show)
+    area = SimpleNamespace(type="VIEW_3D", regions=regions, spaces=SimpleNamespace(active=space))
+    return area, window
 
 
-def test_outside_of_the_image_there_is_no_ray():
-    assert FLAT.ray_at(np.array([5.0, 60.0])) is None
+def test_what_panels_leave_free():
+    from expanded_panoramas.operators.canvas import free_area
+
+    assert free_area(*an_area()) == ([60, 0], [800, 570])
 
 
-def test_a_curve_breaks_at_the_seam():
-    around = np.radians([170, 175, 185, 190])
-    pixels = FLAT.curve_of(np.column_stack([np.cos(around), np.sin(around), np.zeros(4)]))
-    assert np.isnan(pixels[2]).all()
-    assert np.isfinite(pixels[[0, 1, 3, 4]]).all()
-    assert np.abs(np.diff(pixels[[3, 4], 0])) < 100
+@pytest.mark.parametrize(
+    ("xy", "show", "expected"),
+    [
+        ((750, 500), True, True),
+        ((750, 500), False, False),
+        ((690, 500), True, False),
+        ((750, 300), True, False),
+    ],
+)
+def test_clicks_on_the_navigation_buttons_are_theirs(xy, show, expected):
+    from expanded_panoramas.operators.canvas import on_navigation
 
-
-def test_what_is_behind_the_eye_is_not_shown():
-    behind = STAND.from_origin(np.array([[5.0, -9.0, 5.0], [0.5, 0.0, 0.5]]))
-    shown = np.isfinite(BESIDE.curve_of(behind)).all(axis=1)
-    assert shown.tolist() == [False, True]
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
+    assert on_navigation(SimpleNamespace(preferences=preferences), *an_area(show), xy) is expected

@@ -363,3 +363,21 @@ def test_a_removed_image_does_not_stop_the_confirmation(fresh_blend, tmp_path):
     key(this.tool, "RIGHT_ARROW")
     assert "Tilt" in this.confirm()
     assert state.image is not None
+
+
+def test_picks_stay_as_they_are_while_a_tool_edits_a_copy(fresh_blend, tmp_path, monkeypatch):
+    from expanded_panoramas.operators import tools
+
+    bpy = fresh_blend
+    state = calibrated(bpy, tmp_path)
+    count = len(state.picks)
+    monkeypatch.setattr(tools, "_active", operator(bpy.context).tool)
+    for change in (
+        bpy.ops.panorama.remove_item,
+        bpy.ops.panorama.move_item,
+        bpy.ops.panorama.add_pick,
+        bpy.ops.panorama.pick_points,
+    ):
+        with pytest.raises(RuntimeError, match="Pick Points is running"):
+            change()
+    assert len(state.picks) == count
