@@ -23,7 +23,8 @@ def ball(kind: str) -> np.ndarray:
     else:
         shade = 0.12 + 0.6 * np.maximum(normal @ (LIGHT / np.linalg.norm(LIGHT)), 0)
     alpha = np.clip((1 - np.sqrt(squared)) * SIZE / 2.12 + 0.5, 0, 1)
-    return np.concatenate([np.repeat(shade[..., None], 3, axis=-1), alpha[..., None]], axis=-1)
+    colour = np.repeat((shade * alpha)[..., None], 3, axis=-1)  # Blender expects it premultiplied
+    return np.concatenate([colour, alpha[..., None]], axis=-1)
 
 
 def panorama(image: np.ndarray) -> np.ndarray:

@@ -31,7 +31,8 @@ def write_balls(folder: Path, balls: dict[str, bpy.types.Object]):
     }
     for kind, ball in balls.items():
         _mark(ball, told[kind], asset_pictures.ball(kind))
-    _write(folder / BALLS_FILE, set(balls.values()))
+    names = {ball: f"{kind.title()} Ball" for kind, ball in balls.items()}
+    _write(folder / BALLS_FILE, names, bpy.data.objects)
 
 
 def write_lookup(folder: Path, place: Place) -> str:
@@ -41,12 +42,12 @@ def write_lookup(folder: Path, place: Place) -> str:
     """
     panorama = Path(place.image.filepath or place.image.name).stem
     with _temporary(lookup.build_lookup(place).copy()) as group:
-        group.name = f"Panorama {panorama}"
         told = "Radiance of the panorama at a point, as seen from where it was captured, and its light there"
         image = maps.shrink(blender_images.array_from_image(place.image), PICTURE_WIDTH)
         _mark(group, f"{told}: {panorama}", asset_pictures.panorama(np.maximum(image, 0)))
-        _write(folder / f"Panorama {panorama}.blend", {group})
-        return group.name
+        name = f"Panorama {panorama}"
+        _write(folder / f"{name}.blend", {group: name}, bpy.data.node_groups)
+        return name
 
 
 def add_library(preferences: bpy.types.Preferences, name: str, folder: Path) -> bool:
@@ -80,16 +81,37 @@ def _mark(block, description, picture):
     preview.image_pixels_float.foreach_set(np.ascontiguousarray(picture[::-1], np.float32).ravel())
 
 
-def _write(path, blocks):
-    """Write beside the file, then over it: a killed Blender leaves the old assets or the new ones."""
+def _write(path, names, collection):
+    """Write data-blocks by these names; a Blender that is killed leaves the old file or the new one."""
     beside = path.with_name(f".{path.name}.part")
     try:
-        bpy.data.libraries.write(str(beside), blocks, path_remap="ABSOLUTE", fake_user=True, compress=True)
+        with _named(names, collection):
+            bpy.data.libraries.write(
+                str(beside), set(names), path_remap="ABSOLUTE", fake_user=True, compress=True
+            )
         beside.replace(path)
     except RuntimeError as error:
         raise OSError(f"{path}: Blender cannot write it: {error}") from error
     finally:
         beside.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def _named(names, collection):
+    """Give data-blocks these names for a while, though others of this file may have them."""
+    homonyms = {collection.get((name, None)): name for block, name in names.items() if block.name != name}
+    homonyms.pop(None, None)
+    for other in homonyms:
+        other.name = f"{other.name} (waiting)"
+    for block, name in names.items():
+        block.name = name
+    try:
+        yield
+    finally:
+        for block in names:
+            block.name = "asset"
+        for other, name in homonyms.items():
+            other.name = name
 
 
 @contextlib.contextmanager

@@ -25,11 +25,14 @@ def assets_in(bpy, path):
 def test_balls_and_lookup_are_assets(fresh_blend, tmp_path, libraries):
     bpy = fresh_blend
     calibrated(bpy, tmp_path)
+    bpy.ops.panorama.add_ball(kind="MATTE")  # of the same name
+    own = bpy.data.objects["Matte Ball"]
     folder = tmp_path / "library"
     before = len(bpy.data.objects), len(bpy.data.node_groups), len(bpy.data.materials), len(bpy.data.meshes)
     bpy.ops.panorama.add_asset_library(directory=str(folder))
     after = len(bpy.data.objects), len(bpy.data.node_groups), len(bpy.data.materials), len(bpy.data.meshes)
     assert after == (before[0], before[1] + 1, *before[2:])  # the place's own look-up is built anew
+    assert own.name == "Matte Ball"
     found = assets_in(bpy, folder / "Sample Balls.blend") | assets_in(bpy, folder / "Panorama room.blend")
     assert set(found) == {"Mirror Ball", "Matte Ball", "Panorama room"}
     for asset in found.values():
