@@ -10,12 +10,11 @@ import numpy as np
 from ..ibl_toolkit.drawing import sizes, wireframe
 from ..ibl_toolkit.drawn_shape import on_floor
 from ..ibl_toolkit.overlay import ROLE_COLOURS, segment_points
-from ..operators.canvas import ImageCanvas
+from ..operators.canvas import ImageCanvas, free_area
 from ..operators.draw_tool import DrawTool
 from ..operators.shape_lines import built_lines
 from ..operators.tools import active_tool
 from . import drawing
-from .pick_texts import free_area
 
 COLOURS = {role: tuple(value / 255 for value in colour) for role, colour in ROLE_COLOURS.items()}
 BUILT_ALPHA = 0.55
@@ -64,7 +63,7 @@ def _draw_at_mouse(context, tool):
     if tool.typed:
         lines.insert(0, (tool.typed, (1, 1, 1, 1)))
     scale = drawing.scale()
-    rightmost = free_area(context)[1][0] - LETTER[0] * scale * max(
+    rightmost = free_area(context.area, context.region)[1][0] - LETTER[0] * scale * max(
         (len(line) for line, _ in lines), default=0
     )
     left, bottom = tool.xy + 2 * BESIDE * scale
