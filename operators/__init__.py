@@ -26,6 +26,7 @@ from . import (
 )
 
 OPERATORS = (
+    long_work,
     set_files,
     picking,
     pick_points,

@@ -26,7 +26,7 @@ from ..ibl_toolkit.images import atomic
 
 JOB, FILE, PROGRESS, RESULT, OUTPUT = "job.pickle", "scene.blend", "progress.jsonl", "result.pickle", "output"
 SAMPLES = re.compile(r"Sample (\d+)/(\d+)")
-TOLD_EVERY = 0.2
+TOLD_EVERY = 0.5
 """Samples are told no more often [s]."""
 NICENESS = 5
 """The child has all processors, and the window goes first."""

@@ -7,18 +7,13 @@ all of it here and now.
 
 from __future__ import annotations
 
-import pickle
-import sys
-import tempfile
-from pathlib import Path
-
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ..ibl_toolkit.images.atomic import refuse_unwritable
-from . import canvas, child_job, tools
-from .child_job import FILE, JOB, Job, save_edited_images
+from . import canvas, tools
 from .child_process import ChildProcess
+from .child_start import start_child
 from .reporting import Reporting, possible, refuse_linked
 
 POLL_EVERY = 0.1
@@ -177,41 +172,23 @@ class LongExport(LongWork, ExportHelper):
         return {"CANCELLED"}
 
 
-def start_child(long_part, scene, inputs: dict) -> ChildProcess:
-    """Start a Blender that does the long part on a copy of the file. Raises OSError or RuntimeError."""
-    folder = tempfile.TemporaryDirectory(
-        prefix="panorama_", dir=bpy.app.tempdir, ignore_cleanup_errors=True
-    )  # within Blender's own, which goes with it
-    path = Path(folder.name)
-    try:
-        images = save_edited_images(path)
-        _save_copy(path / FILE)
-        job = Job(long_part, scene.name, inputs, images, use_scripts=not bpy.app.autoexec_fail)
-        (path / JOB).write_bytes(pickle.dumps(job))
-        return ChildProcess(folder, command(folder.name))
-    except (OSError, RuntimeError):
-        folder.cleanup()
-        raise
+class PANORAMA_OT_cancel_work(bpy.types.Operator):
+    """End the long work that runs now and leave the scene as it is, like Esc in the window where it began"""
 
+    bl_idname = "panorama.cancel_work"
+    bl_label = "Cancel Long Work"
+    bl_options = set()
 
-def _save_copy(path):
-    """Save a copy without the preview, a picture of the window that takes longer than all the rest."""
-    preferences = bpy.context.preferences
-    kept, is_dirty = preferences.filepaths.file_preview_type, preferences.is_dirty
-    try:
-        preferences.filepaths.file_preview_type = "NONE"
-        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
-    finally:
-        preferences.filepaths.file_preview_type, preferences.is_dirty = kept, is_dirty
+    @classmethod
+    def poll(cls, context):
+        """Something must run."""
+        return possible(cls, "" if _running else "No long work is running")
 
-
-def command(folder: str) -> list[str]:
-    """The command line of the child: this Blender with the user's settings, for the sake of their GPU."""
-    code = (
-        f"import sys; sys.path += [path for path in {sys.path!r} if path not in sys.path]; "
-        f"from importlib import import_module; import_module({child_job.__name__!r}).main({folder!r})"
-    )
-    return [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python-expr", code]
+    def execute(self, context):
+        """End it; its operator goes with the next event."""
+        self.report({"INFO"}, f"{_running.label}: cancelled, nothing has changed")
+        stop()
+        return {"FINISHED"}
 
 
 def show(context):
@@ -240,8 +217,12 @@ def _draw_status(header, context):
     if _running is not None:
         header.layout.label(text=_running.text())
         header.layout.label(text="Cancel", icon="EVENT_ESC")
+        header.layout.operator(PANORAMA_OT_cancel_work.bl_idname, text="", icon="CANCEL", emboss=False)
 
 
 def unregister():
     """Nothing runs any more: Blender drops the operator without a word."""
     stop()
+
+
+classes = (PANORAMA_OT_cancel_work,)

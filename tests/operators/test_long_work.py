@@ -32,6 +32,7 @@ def long_work(fresh_blend):
 @pytest.fixture
 def fake(long_work, monkeypatch):
     """fake(behaviour, result) makes an operator whose child does that, and its context."""
+    from expanded_panoramas.operators import child_start
     from expanded_panoramas.operators.child_job import Result
 
     def make(behaviour, result=None):
@@ -43,7 +44,7 @@ def fake(long_work, monkeypatch):
             code = f"import os, sys, time; os.chdir({folder!r}); {tell}; {RESULTS[behaviour]}"
             return [sys.executable, "-c", code]
 
-        monkeypatch.setattr(long_work, "command", command)
+        monkeypatch.setattr(child_start, "command", command)
         return operator(long_work), window_context()
 
     return make
@@ -136,6 +137,17 @@ def test_an_error_of_the_child_is_reported(long_work, fake, behaviour, refusal, 
     assert long_work.running() == ""
 
 
+def test_a_button_ends_the_child_from_any_window(fresh_blend, long_work, fake):
+    work, context = fake("waits")
+    with pytest.raises(RuntimeError, match="No long work is running"):
+        fresh_blend.ops.panorama.cancel_work()
+    work.begin(context)
+    child = child_of(long_work)
+    assert fresh_blend.ops.panorama.cancel_work() == {"FINISHED"}
+    assert is_gone(*child)
+    assert work.modal(context, event("TIMER")) == {"CANCELLED"}
+
+
 @pytest.mark.parametrize("behaviour", ["waits", "hangs"])
 def test_escape_ends_the_child(long_work, fake, behaviour):
     work, context = fake(behaviour)
@@ -210,14 +222,14 @@ def test_one_at_a_time(fresh_blend, long_work, fake, tmp_path):
             getattr(fresh_blend.ops.panorama, name)()
 
 
-def wheel_command(long_work):
-    """The real child, as the Python of the wheel."""
-    blender = long_work.command
+@pytest.fixture
+def start_child(fresh_blend, monkeypatch):
+    """Starts the real child, as the Python of the wheel."""
+    from expanded_panoramas.operators import child_start
 
-    def command(folder):
-        return [sys.executable, "-c", blender(folder)[-1]]
-
-    return command
+    blender = child_start.command
+    monkeypatch.setattr(child_start, "command", lambda folder: [sys.executable, "-c", blender(folder)[-1]])
+    return child_start.start_child
 
 
 def wait_for(child):
@@ -228,7 +240,7 @@ def wait_for(child):
     child.read_progress()
 
 
-def test_the_child_measures_what_is_in_no_file(fresh_blend, long_work, tmp_path, monkeypatch):
+def test_the_child_measures_what_is_in_no_file(fresh_blend, start_child, tmp_path):
     """The file was never saved, pixels of the panorama were painted; the child's light is that of here."""
     from expanded_panoramas.cycles_integration import place_digest, preparation
     from expanded_panoramas.operators import light
@@ -240,8 +252,7 @@ def test_the_child_measures_what_is_in_no_file(fresh_blend, long_work, tmp_path,
     here.image.pixels.foreach_set(painted.ravel())
     bpy.context.view_layer.update()
     before = place_digest.digest_of_place(scene)
-    monkeypatch.setattr(long_work, "command", wheel_command(long_work))
-    child = long_work.start_child(light.measure_light, scene, {"most": 2})
+    child = start_child(light.measure_light, scene, {"most": 2})
     wait_for(child)
     found = child.value()
     child.stop().join()
@@ -254,15 +265,14 @@ def test_the_child_measures_what_is_in_no_file(fresh_blend, long_work, tmp_path,
     assert np.allclose(found.irradiance, here_and_now.irradiance, rtol=1e-3)
 
 
-def test_a_child_without_parent_ends_and_cleans_up(fresh_blend, long_work, tmp_path, monkeypatch):
+def test_a_child_without_parent_ends_and_cleans_up(fresh_blend, start_child, tmp_path):
     """To the child, a parent that was killed looks as one that closes the pipe."""
     from expanded_panoramas.operators import pictures
 
     built(fresh_blend, tmp_path)
     fresh_blend.context.scene.panorama_set.job.samples = 4096
-    monkeypatch.setattr(long_work, "command", wheel_command(long_work))
     inputs = {"path": str(tmp_path / "whole.exr"), "width": 4096}
-    child = long_work.start_child(pictures.render_panorama, fresh_blend.context.scene, inputs)
+    child = start_child(pictures.render_panorama, fresh_blend.context.scene, inputs)
     child.process.stdin.close()
     assert child.process.wait(PATIENCE_S) == 1
     assert not child.path.exists()
@@ -270,14 +280,13 @@ def test_a_child_without_parent_ends_and_cleans_up(fresh_blend, long_work, tmp_p
     child.stop().join()
 
 
-def test_a_refusal_of_the_child_is_its_own_words(fresh_blend, long_work, tmp_path, monkeypatch):
+def test_a_refusal_of_the_child_is_its_own_words(fresh_blend, start_child, tmp_path):
     from expanded_panoramas.operators import clipped_light
 
     fresh_blend.ops.panorama.import_set(filepath=str(write_room(tmp_path)))
     fresh_blend.ops.panorama.calibrate()
-    monkeypatch.setattr(long_work, "command", wheel_command(long_work))
     inputs = {"path": str(tmp_path / "restored.exr"), "known": "IRRADIANCE", "value": 1.0}
-    child = long_work.start_child(clipped_light.restore_light, fresh_blend.context.scene, inputs)
+    child = start_child(clipped_light.restore_light, fresh_blend.context.scene, inputs)
     wait_for(child)
     with pytest.raises(ValueError, match="clipped"):
         child.value()
