@@ -57,8 +57,6 @@ class DrawTool(Tool):
 
     def handle(self, on, xy, event):
         """Look where the mouse is, then do what the event says."""
-        if event.alt and event.type == "LEFTMOUSE":
-            return PASS  # turns the view for those whose mouse has two buttons
         self._look(on, xy, event.shift)
         if event.type in MOVES:
             return self._drag(xy)

@@ -42,7 +42,7 @@ class Hand:
         self.xy, self.answer = None, None
 
     def event(self, kind, value="PRESS", **modifiers):
-        known = {"shift": False, "ctrl": False, "alt": False, "unicode": "", **modifiers}
+        known = {"shift": False, "ctrl": False, "unicode": "", **modifiers}
         on = None if self.xy is None else self.on
         self.answer = self.tool.handle(on, self.xy, SimpleNamespace(type=kind, value=value, **known))
         return self.answer
