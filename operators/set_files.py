@@ -1,5 +1,6 @@
 """Operators that open a panorama, and read and write the set file."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -159,7 +160,12 @@ def open_rgbd(context, path) -> str:
     state.picks.clear()
     state.shapes.clear()
     state.image, state.image_path = loaded.place.image, str(path)
+    for field in state.result.bl_rna.properties:  # nothing of an earlier calibration is true any more
+        state.result.property_unset(field.identifier)
     state.result.camera_height, state.result.is_solved = loaded.camera_height, True
+    up = loaded.place.origin.matrix_world.col[2]
+    state.result.tilt_deg = math.degrees(math.acos(max(-1, min(up.z, 1))))
+    state.problem = ""
     state.calibration_is_old, state.maps_are_old = False, True
     show_in_image_editors(context, loaded.place.image)
     faces, error = len(loaded.surface.mesh.faces), 100 * loaded.surface.median_error

@@ -4,16 +4,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from room_job import built, write_room
+from room_job import built, calibrated, write_room
 
 from expanded_panoramas.ibl_toolkit.images import RGBD, write_exr, write_rgbd
 
 
 def write_depth(folder):
-    """An RGB-D panorama of the inside of a ball of 2 m."""
+    """An RGB-D panorama of the inside of a ball of 2 m, tilted by 30°."""
     image = np.full((16, 32, 3), 0.5, np.float32)
     depth = np.full((16, 32), 2.0, np.float32)
-    write_rgbd(folder / "depth.exr", RGBD(image, depth, np.eye(3), 1.2))
+    s, c = 0.5, np.sqrt(0.75)
+    tilted = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    write_rgbd(folder / "depth.exr", RGBD(image, depth, tilted, 1.2))
     return folder / "depth.exr"
 
 
@@ -32,8 +34,12 @@ def test_a_dropped_file_is_opened_at_once(fresh_blend, tmp_path):
 
 def test_a_dropped_map_with_depth_is_opened_with_it(fresh_blend, tmp_path):
     bpy = fresh_blend
-    bpy.ops.panorama.drop_image(filepath=str(write_depth(tmp_path)))
     scene = bpy.context.scene
+    calibrated(bpy, tmp_path)
+    assert scene.panorama_set.result.uncertainty_tilt_deg > 0
+    bpy.ops.panorama.drop_image(filepath=str(write_depth(tmp_path)))
+    assert scene.panorama_set.result.uncertainty_tilt_deg == 0  # of the one before
+    assert scene.panorama_set.result.tilt_deg == pytest.approx(30, abs=1e-3)
     assert scene.panorama_set.result.is_solved
     assert scene.panorama_place.origin.location.z == pytest.approx(1.2)
     assert [o.panorama_role for o in scene.panorama_place.surfaces.all_objects] == ["ENVIRONMENT"]
