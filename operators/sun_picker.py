@@ -36,8 +36,9 @@ class _SunOfLamp(Reporting):
         if clipping.is_clipped and clipping.mask.ravel()[lamp.pixels].any():
             self.report({"WARNING"}, "The capture may have clipped this lamp: it was brighter then (step 5)")
         sigma = context.scene.panorama_set.result.uncertainty_tilt_deg
+        known_to = f" ± {sigma:.2f}°" if sigma else ""  # a file with depth does not tell
         return (
-            f"{sun.light.name}: elevation {sun.elevation_deg:.1f}° ± {sigma:.2f}°, azimuth "
+            f"{sun.light.name}: elevation {sun.elevation_deg:.1f}°{known_to}, azimuth "
             f"{sun.azimuth_deg:.1f}° from +x towards +y, {np.degrees(2 * lamp.radius):.2g}° across, strength "
             f"{sun.light.data.energy:.3g}{'' if sun.is_new else ' (brought up to date)'}"
         )

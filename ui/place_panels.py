@@ -86,6 +86,10 @@ class PANORAMA_PT_calibration(Step, bpy.types.Panel):
     def draw_result(self, context, result, by_length):
         """The figures, with one standard deviation for half a pixel of click error."""
         box = self.layout.box().column(align=True)
+        if not result.condition:  # it came with the file
+            figure(box, "Tilt", f"{result.tilt_deg:.2f}°, as the file says")
+            figure(box, "Camera height", f"{result.camera_height:.3f} m")
+            return
         figure(box, "Tilt", f"{result.tilt_deg:.2f}° ± {result.uncertainty_tilt_deg:.2f}°")
         if by_length:
             figure(box, "Camera height", f"{result.camera_height:.3f} m")

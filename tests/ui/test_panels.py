@@ -126,6 +126,16 @@ def test_warnings_and_problems_are_shown(fresh_blend, tmp_path):
     assert "far off" in texts["PANORAMA_PT_shapes"]
 
 
+def test_a_calibration_that_came_with_the_file(fresh_blend, tmp_path):
+    state = calibrated(fresh_blend, tmp_path)
+    for name in ("condition", "uncertainty_tilt_deg", "residual_deg"):
+        state.result.property_unset(name)
+    state.result.tilt_deg = 12.5
+    texts = draw_all(fresh_blend)["PANORAMA_PT_calibration"]
+    assert "12.50°, as the file says" in texts
+    assert "±" not in texts
+
+
 def test_selected_pieces(fresh_blend, tmp_path):
     bpy = fresh_blend
     built(bpy, tmp_path)
