@@ -11,7 +11,7 @@ from ..ibl_toolkit.calibration import calibrate
 from ..ibl_toolkit.images import read_panorama
 from ..ibl_toolkit.panorama_set import PanoramaSet
 from ..ibl_toolkit.reconstruction import reconstruct
-from . import conversion
+from . import conversion, viewing
 
 RESULT_FIELDS = (
     "camera_height",
@@ -92,6 +92,7 @@ def _solve(scene, names):
     update_pieces(place, pieces)
     _note_calibration(state, calibration)
     _note_pieces(state, pieces)
+    viewing.follow_origin(scene)
     state.shapes_are_old = names is not None and state.shapes_are_old
     return calibration
 

@@ -31,6 +31,20 @@ class PANORAMA_OT_look_around(Reporting, bpy.types.Operator):
         return f"The view is {z:.2f} m above the floor, where the panorama was captured"
 
 
+def follow_origin(scene):
+    """Take the views that look around along when calibration moves the point of capture.
+
+    Else what is drawn in them would be off by as much, with nothing to be seen of it.
+    """
+    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
+        if window.scene != scene:
+            continue
+        for area in window.screen.areas:
+            view = area.spaces.active.region_3d if area.type == "VIEW_3D" else None
+            if view is not None and view.view_perspective == "PERSP" and view.view_distance < 2 * ARM:
+                view.view_location = _origin(scene)
+
+
 def _origin(scene):
     """Where the panorama was captured (3,) [m]."""
     return 0.0, 0.0, calibration_of(scene)[1]
