@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 
 INSIDE = pathlib.Path(__file__).parent / "inside"
-WIDTH, HEIGHT = 1400, 1080
+WIDTH, HEIGHT = 1280, 960
 """Of the window [px]: high enough for most of the sidebar."""
 QUALITY = 85
 SECONDS = 300

@@ -20,8 +20,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from hand import Hand
 from waiting import AT_ONCE, Until
 
-TURNS = 4
-"""Rounds of Blender's main loop between two steps: for its events, its drawing, and its own timers."""
+TURNS = 2
+"""Rounds of Blender's main loop between two steps: in the first it handles events and draws."""
 FAILURES = (
     ArithmeticError, AssertionError, AttributeError, LookupError, NameError, OSError, ReferenceError,
     RuntimeError, TypeError, ValueError,

@@ -39,21 +39,30 @@ class Hand:
         self.send("MOUSEMOVE")
 
     def move(self, x, y, steps=1):
-        """Move there in so many steps; the last one is repeated a pixel beside, as a real hand trembles."""
+        """Move there in so many steps; at the end it trembles by a pixel, as a real hand does."""
         start = self.x, self.y
         for i in range(1, steps + 1):
             self.hover(*(a + (b - a) * i / steps for a, b in zip(start, (x, y), strict=True)))
-            yield
+            if i < steps:
+                yield
         self.hover(x + 1, y)
         self.hover(x, y)
         yield
 
     def click(self, x, y, button="LEFTMOUSE", **how):
-        """Move there, press and release."""
-        yield from self.move(x, y)
-        self.send(button, "PRESS", **how)
+        """Move there, press and release, faster than Blender draws."""
+        self.hover(x + 1, y)
+        self.hover(x, y)
+        self.tap(button, **how)
         yield
-        self.send(button, "RELEASE", **how)
+
+    def swing(self, start, end, button="MIDDLEMOUSE"):
+        """Drag faster than Blender draws, as one turns a view."""
+        self.hover(*start)
+        self.send(button, "PRESS")
+        self.hover(*((a + b) / 2 for a, b in zip(start, end, strict=True)))
+        self.hover(*end)
+        self.send(button, "RELEASE")
         yield
 
     def drag(self, start, end, steps=8, button="LEFTMOUSE", **how):
