@@ -26,6 +26,11 @@ class Stand:
     world_from_panorama: np.ndarray
     camera_height: float
 
+    def is_close(self, world_from_panorama, camera_height) -> bool:
+        """Whether a panorama so calibrated stands as this one."""
+        same_height = np.isclose(self.camera_height, camera_height)
+        return bool(same_height and np.allclose(self.world_from_panorama, world_from_panorama, atol=1e-6))
+
     def world_ray(self, start, direction):
         """A ray (start [m], direction) of the panorama frame, (3,) each, in the world."""
         return self.world_from_panorama @ start + (

@@ -52,8 +52,10 @@ class PANORAMA_OT_draw_shape(ToolOperator, bpy.types.Operator):
 
     def work(self, context):
         """Add what was drawn to the set and build it. Where that fails, the tool goes on and says why."""
-        state = context.scene.panorama_set
+        state, stand = context.scene.panorama_set, self.tool.shape.stand
         try:
+            if not stand.is_close(*calibration_of(context.scene)):
+                raise ValueError("the calibration has changed since: cancel, and draw it again")
             shapes = self.tool.result(lambda name: conversion.free_name(state, name))
             solving.add_shapes(context.scene, shapes)
         except (ValueError, OSError) as error:

@@ -21,7 +21,7 @@ BUILT_ALPHA = 0.55
 WRONG = (1, 0.45, 0.4, 1)
 BESIDE = np.array([16.0, 12.0])
 """Where text stands from what it is about [px of a plain screen]."""
-LETTER = (8, 14)
+LETTER = (6.5, 14)
 """Room for a letter [px of a plain screen]."""
 LINE, WIDEST = 24, 56
 """Distance of lines [px of a plain screen], and letters in one."""

@@ -99,6 +99,17 @@ def test_a_refused_shape_leaves_the_scene_alone_and_the_tool_at_work(empty_room)
     assert len(bpy.context.scene.panorama_set.shapes) == 2
 
 
+def test_a_shape_of_an_older_calibration_is_refused(empty_room):
+    bpy = empty_room
+    hand = drawing(bpy, "square")
+    hand.click((1, 1), (2, 2))
+    bpy.context.scene.panorama_set.camera_height = 2.0
+    bpy.context.view_layer.update()
+    with pytest.raises(ValueError, match="the calibration has changed since"):
+        hand.apply()
+    assert not bpy.context.scene.panorama_set.shapes
+
+
 def test_a_half_picked_shape_of_the_list_is_in_nobodys_way(empty_room):
     bpy = empty_room
     bpy.ops.panorama.add_shape(kind="box")
