@@ -48,17 +48,17 @@ class Place(bpy.types.PropertyGroup):
 
 
 def place_of(scene: bpy.types.Scene) -> Place:
-    """Return the scene's place; ValueError where it has none."""
+    """Return the scene's place, whole again where parts of it were deleted; ValueError where it has none."""
     place = scene.panorama_place
-    if place.image is None or not is_here(place):
+    if place.image is None or place.origin is None or not is_here(place):
         raise ValueError(f"scene {scene.name!r} has no panorama: calibrate one first")
+    _complete(place)
     return place
 
 
 def is_here(place: Place) -> bool:
     """Whether a place stands in its scene: one made with the settings of another only knows of its place."""
-    scene = place.id_data
-    return place.origin is not None and place.collection in scene.collection.children_recursive
+    return place.collection in place.id_data.collection.children_recursive
 
 
 def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
@@ -67,22 +67,43 @@ def create_place(scene: bpy.types.Scene, image_path: str, calibration) -> Place:
     if not is_here(place):
         for pointer in place.bl_rna.properties:
             place.property_unset(pointer.identifier)
-    place.image = blender_images.load_radiance(image_path)
-    if place.collection is None:
         place.collection = _child_collection(scene.collection, "Panorama")
-        place.surfaces = _child_collection(place.collection, "Panorama Surfaces")
-        place.support = _child_collection(place.surfaces, "Panorama Support")
-        place.environment = _child_collection(place.surfaces, "Panorama Environment")
-        place.lights = _child_collection(place.surfaces, "Panorama Lamps")
-        place.suns = _child_collection(place.collection, "Panorama Suns")
-        place.origin = _empty(place.collection, ORIGIN)
+    place.image = blender_images.load_radiance(image_path)
+    if place.origin is None:
+        place.origin = bpy.data.objects.new(ORIGIN, None)
         place.origin.empty_display_type, place.origin.empty_display_size = "ARROWS", 0.2
-        place.catchers = _child_collection(place.collection, "Panorama Catchers")
-        place.catcher = _empty(place.catchers, CATCHER)
-        place.catcher.instance_type, place.catcher.is_shadow_catcher = "COLLECTION", True
-        place.catcher.hide_viewport = True
+    _complete(place)
     set_calibration(place, calibration.world_from_panorama, calibration.camera_height)
     return place
+
+
+PARTS = (
+    ("surfaces", "Panorama Surfaces", "collection"),
+    ("support", "Panorama Support", "surfaces"),
+    ("environment", "Panorama Environment", "surfaces"),
+    ("lights", "Panorama Lamps", "surfaces"),
+    ("suns", "Panorama Suns", "collection"),
+    ("catchers", "Panorama Catchers", "collection"),
+)
+"""The collections of a place, what they are called, and in which one each lies."""
+
+
+def _complete(place):
+    """Make what an artist may have deleted in the Outliner, or what is not there yet."""
+    scene = place.id_data
+    for part, name, parent in PARTS:
+        collection, parent = getattr(place, part), getattr(place, parent)
+        if collection is None:
+            setattr(place, part, _child_collection(parent, name))
+        elif collection not in scene.collection.children_recursive:  # what it lay in was deleted
+            parent.children.link(collection)
+    if place.catcher is None:
+        place.catcher = bpy.data.objects.new(CATCHER, None)
+        place.catcher.instance_type, place.catcher.is_shadow_catcher = "COLLECTION", True
+        place.catcher.hide_viewport = True
+    for thing, collection in ((place.origin, place.collection), (place.catcher, place.catchers)):
+        if not thing.users_collection:  # deleted from the scene, it is kept by the place alone
+            collection.objects.link(thing)
 
 
 def own_name(place: Place, name: str) -> str:
@@ -141,12 +162,6 @@ def _move(thing, collection):
 def _synthetic_collection(scene):
     existing = (c for c in scene.collection.children if c.name.startswith("Synthetic"))
     return next(existing, None) or _child_collection(scene.collection, "Synthetic")
-
-
-def _empty(collection, name):
-    thing = bpy.data.objects.new(name, None)
-    collection.objects.link(thing)
-    return thing
 
 
 def _child_collection(parent, name):

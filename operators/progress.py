@@ -39,7 +39,7 @@ def missing_of(state) -> str:
 def calibration_missing(scene) -> str:
     """What step 2 lacks for those after it."""
     place = scene.panorama_place
-    done = scene.panorama_set.result.is_solved and place.image and is_here(place)
+    done = scene.panorama_set.result.is_solved and place.image and place.origin and is_here(place)
     return "" if done else "Calibrate first"
 
 

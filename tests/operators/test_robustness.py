@@ -117,6 +117,36 @@ def test_a_copy_of_a_scene_leaves_the_first_one_its_light(fresh_blend, tmp_path,
     assert bpy.ops.panorama.set_up_picture() == {"FINISHED"}
 
 
+@pytest.mark.parametrize("part", ["suns", "catchers", "lights", "support", "surfaces"])
+def test_collections_that_were_deleted_come_back(fresh_blend, tmp_path, quick, part):
+    bpy = fresh_blend
+    built(bpy, tmp_path)
+    place = bpy.context.scene.panorama_place
+    bpy.data.collections.remove(getattr(place, part))
+    bpy.ops.panorama.build()
+    bpy.ops.panorama.prepare()
+    bpy.ops.panorama.add_camera()
+    assert bpy.ops.panorama.set_up_picture() == {"FINISHED"}
+    assert len({thing["panorama_piece"] for thing in place.surfaces.all_objects}) == 5
+
+
+def test_an_origin_that_was_deleted_comes_back(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    built(bpy, tmp_path)
+    place = bpy.context.scene.panorama_place
+    select(bpy, "Panorama Origin")
+    bpy.ops.object.delete()
+    bpy.ops.panorama.calibrate()
+    assert place.origin.name in bpy.context.scene.objects
+    assert place.origin.location.z == pytest.approx(1.5)
+    bpy.data.objects.remove(place.origin)
+    with pytest.raises(RuntimeError, match="Calibrate first"):
+        bpy.ops.panorama.add_camera()
+    bpy.ops.panorama.calibrate()
+    assert len([thing for thing in bpy.data.objects if thing.name.startswith("Panorama Origin")]) == 1
+    assert len(place.surfaces.all_objects) == 5
+
+
 # --- linked and overridden objects --------------------------------------------------------------------------
 
 
