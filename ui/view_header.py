@@ -20,8 +20,10 @@ class PANORAMA_PT_view(bpy.types.Panel):
         row = column.row()
         row.active = context.space_data.shading.type == "WIREFRAME"
         row.prop(view, "opacity", text="Wireframe Mix", slider=True)
-        layout.prop(view, "show_calibration")
-        layout.operator("panorama.look_around", icon="VIEW_PAN")
+        column = layout.column(heading="Show")
+        column.prop(view, "show_calibration")
+        column.prop(context.space_data.overlay, "show_floor", text="Blender's Grid")
+        layout.operator("panorama.look_around", icon="ORIENTATION_GIMBAL")
 
 
 def draw_toggle(self, context):

@@ -136,6 +136,7 @@ def _state_given_back():
     blend, test = gpu.state.blend_get(), gpu.state.depth_test_get()
     written = gpu.state.depth_mask_get()
     gpu.state.depth_mask_set(False)
+    gpu.state.clip_distances_set(0)  # left by a view with a clipping border; callbacks begin without
     try:
         yield
     finally:
