@@ -10,6 +10,7 @@ from gpu_extras.batch import batch_for_shader
 
 FONT = 0
 ELLIPSE_STEPS = 48
+DISC_CORNERS = 24
 SHADOW = (0, 0, 0, 0.7)
 
 
@@ -44,12 +45,12 @@ def draw_segments(segments, colour, width=1.5):
 
 def dots(points, colour, radius=4):
     """Discs with a dark rim at points (n, 2)."""
-    turns = np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    circle = np.column_stack([np.cos(turns), np.sin(turns)])
-    for point in np.asarray(points, float).reshape(-1, 2):
-        if np.isfinite(point).all():
-            _fan(point + (radius + 1.2) * scale() * circle, SHADOW)
-            _fan(point + radius * scale() * circle, colour)
+    points = np.asarray(points, np.float32).reshape(-1, 2)
+    points = points[np.isfinite(points).all(axis=1)]
+    turns = np.linspace(0, 2 * np.pi, DISC_CORNERS, endpoint=False)
+    circle = np.column_stack([np.cos(turns), np.sin(turns)]) * scale()
+    for size, filling in ((radius + 1.2, SHADOW), (radius, colour)):
+        _fans(points[:, None] + size * circle, filling)
 
 
 def ellipse(centre, half_axes, colour, width=1.5):
@@ -99,11 +100,20 @@ class blending:
 
 
 def _fan(points, colour):
-    corners = np.zeros((len(points), 3), np.float32)  # doubles would be read as if they were these
-    corners[:, :2] = points
+    _fans(np.asarray(points, np.float32)[None], colour)
+
+
+def _fans(outlines, colour):
+    """Convex outlines (n, k, 2), filled, in one call."""
+    count, corners, _ = outlines.shape
+    if not count:
+        return
+    places = np.zeros((count * corners, 3), np.float32)  # doubles would be read as if they were these
+    places[:, :2] = outlines.reshape(-1, 2)
+    fan = np.array([(0, i, i + 1) for i in range(1, corners - 1)])
+    indices = (np.arange(count)[:, None, None] * corners + fan).reshape(-1, 3).astype(np.int32)
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    indices = [(0, i, i + 1) for i in range(1, len(corners) - 1)]
-    batch = batch_for_shader(shader, "TRIS", {"pos": corners}, indices=indices)
+    batch = batch_for_shader(shader, "TRIS", {"pos": places}, indices=indices)
     shader.uniform_float("color", colour)
     with blending():
         batch.draw(shader)

@@ -9,7 +9,7 @@ from ..operators.pick_tool import PickTool
 from ..operators.picks_copy import PicksCopy, solve_live
 from ..operators.tools import active_tool
 from . import drawing, magnifier, pick_texts
-from .panorama_curves import circle, curve_pixels, outline
+from .panorama_curves import circle, curve_pixels, segments
 
 CLICKED, SOLVED = (1, 1, 1, 0.9), (1, 0.75, 0.2, 0.95)
 TARGET, SELECTED = (1, 0.55, 0.1, 1), (1, 1, 0.3, 1)
@@ -17,6 +17,8 @@ FAINT = 0.55
 ENLARGED = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
 VISIBLE_PIXELS = 14
 """Half the length from which an ellipse can be read [px at a UI scale of 1]; shorter ones are enlarged."""
+LARGE_RESIDUAL = 1.5
+"""Of a click [px of the image]: careful ones err by half a pixel to that."""
 _stored = [None, None]  # what was solved last where no tool runs: (picks, size), Live
 
 
@@ -70,36 +72,38 @@ def _draw_planes(canvas, world_from_panorama, alpha):
 
 def _draw_picks(canvas, copied, live, target, alpha):
     """Each pick as clicked, and as the solution sees it."""
+    solved, clicked, dots = [], {TARGET: [], CLICKED: []}, {TARGET: [], CLICKED: []}
     for number, pick in enumerate(copied.picks):
         colour = TARGET if number == target else CLICKED
-        for group, closed in _groups(pick):
-            uv = np.array([point.uv for point in group])
-            drawing.lines(
-                curve_pixels(canvas, outline(direction_from_uv(uv), closed=closed)), _faded(colour, alpha)
-            )
-            corrected = _corrected(live, uv)
-            if corrected is not None:
-                curve = curve_pixels(canvas, outline(corrected, closed=closed))
-                drawing.lines(curve, _faded(SOLVED, alpha), 1)
-        picked = np.array([point.uv for point in pick.points if point.picked]).reshape(-1, 2)
-        drawing.dots(canvas.pixels_of(picked), _faded(colour, alpha), 4)
+        for pair in _pairs(pick):
+            clicked[colour].append(pair)
+            indices = [] if live.report is None else live.report.indices(pair)
+            if len(indices) and min(indices) >= 0:
+                solved.append(live.report.corrected[indices])
+        dots[colour] += [point.uv for point in pick.points if point.picked]
+    for colour, pairs in clicked.items():
+        _draw_sides(canvas, direction_from_uv(np.reshape(pairs, (-1, 2, 2))), _faded(colour, alpha))
+    _draw_sides(canvas, np.reshape(solved, (-1, 2, 3)), _faded(SOLVED, alpha), 1)
+    for colour, uv in dots.items():
+        drawing.dots(canvas.pixels_of(np.reshape(uv, (-1, 2))), _faded(colour, alpha), 4)
 
 
-def _groups(pick):
-    """Points that are joined, and whether they close: a rectangle's so far, or the ends of each line."""
-    if pick.kind == "RECTANGLE":
-        picked = [point for point in pick.points if point.picked]
-        return [(picked, not pick.missing)] if len(picked) > 1 else []
-    pairs = zip(pick.points[::2], pick.points[1::2], strict=False)
-    return [(pair, False) for pair in pairs if pair[0].picked and pair[1].picked]
+def _draw_sides(canvas, ends, colour, width=1.5):
+    """Straight lines of the place between directions (m, 2, 3)."""
+    if len(ends):
+        drawing.lines(curve_pixels(canvas, segments(ends[:, 0], ends[:, 1])), colour, width)
 
 
-def _corrected(live, uv):
-    """Where the solution puts clicks (k, 2): directions (k, 3); None where it says nothing about them."""
-    if live.report is None:
-        return None
-    indices = live.report.indices(uv)
-    return live.report.corrected[indices] if (indices >= 0).all() else None
+def _pairs(pick):
+    """The image points that are joined, two by two: a rectangle's sides so far, or the ends of each line."""
+    points = [point.uv if point.picked else None for point in pick.points]
+    is_rectangle = pick.kind == "RECTANGLE"
+    joined = (
+        zip(points, points[1:] + points[:1], strict=True)
+        if is_rectangle
+        else zip(points[::2], points[1::2], strict=True)
+    )
+    return [pair for pair in joined if None not in pair]
 
 
 def _draw_ellipses(canvas, live, region_size):
@@ -107,7 +111,7 @@ def _draw_ellipses(canvas, live, region_size):
     report = live.report
     if report is None:
         return 0
-    axes = np.stack([report.half_axes(k) for k in range(len(report.uv))])
+    axes = report.half_axes()
     middles = canvas.pixels_of(uv_from_direction(report.corrected))
     ends = canvas.pixels_of(uv_from_direction(report.corrected[:, None] + np.swapaxes(axes, 1, 2)))
     lengths = np.linalg.norm(ends - middles[:, None], axis=-1).max(axis=1)
@@ -116,24 +120,27 @@ def _draw_ellipses(canvas, live, region_size):
         return 0
     least = VISIBLE_PIXELS * drawing.scale() / max(np.median(lengths[shown]), 1e-9)
     factor = next((factor for factor in ENLARGED if factor >= least), ENLARGED[-1])
-    for k in np.flatnonzero(shown):
-        turns = np.linspace(0, 2 * np.pi, drawing.ELLIPSE_STEPS)
-        rim = report.corrected[k] + factor * np.stack([np.cos(turns), np.sin(turns)], axis=1) @ axes[k].T
-        drawing.lines(curve_pixels(canvas, rim), SOLVED, 1)
+    turns = np.linspace(0, 2 * np.pi, drawing.ELLIPSE_STEPS)
+    unit = factor * np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    rims = report.corrected[shown][:, None] + unit @ np.swapaxes(axes[shown], 1, 2)
+    drawing.lines(curve_pixels(canvas, rims), SOLVED, 1)
     return factor
 
 
 def _draw_labels(canvas, editing, live):
-    """Number and residual of the points of the pick that is being filled."""
-    if editing.target < 0:
-        return
-    for number, point in enumerate(editing.copied.picks[editing.target].points, 1):
-        if not point.picked:
-            continue
-        index = -1 if live.report is None else live.report.indices(point.uv)[0]
-        residual = "" if index < 0 else f"  {live.report.residual_pixels[index]:.2f} px"
-        offset = 9 * drawing.scale()
-        drawing.text(canvas.pixels_of(np.array(point.uv)) + offset, f"{number}{residual}", size=11)
+    """Number and residual of the points of the pick that is being filled; of others where it is large."""
+    for number, pick in enumerate(editing.copied.picks):
+        for k, point in enumerate(pick.points):
+            if not point.picked:
+                continue
+            index = -1 if live.report is None else live.report.indices(point.uv)[0]
+            residual = 0.0 if index < 0 else live.report.residual_pixels[index]
+            if number == editing.target or residual > LARGE_RESIDUAL:
+                said = f"{k + 1}" if number == editing.target else ""
+                said += f"  {residual:.2f} px" if index >= 0 else ""
+                place = canvas.pixels_of(np.array(point.uv)) + 12 * drawing.scale()
+                colour = pick_texts.WARNING if residual > LARGE_RESIDUAL else pick_texts.PLAIN
+                drawing.text(place, said.strip(), colour, 11, backed=True)
 
 
 def _opaque(colour, alpha):

@@ -16,7 +16,7 @@ def draw(context, tool, factor):
     """Draw the lines at the lower left of a region; factor: by how much ellipses are enlarged."""
     scale = drawing.scale()
     (left, bottom), (right, _) = free_area(context.area, context.region)
-    letters = max(int((right - left) / (LETTER * scale * 1.1)) - 4, 24)
+    letters = max(int((right - left) / (LETTER * scale)) - 4, 24)
     wrapped = [
         (part, colour) for line, colour in lines(tool, factor) for part in textwrap.wrap(line, letters)
     ]

@@ -1,6 +1,7 @@
 """What the adjustment says about each click: how far it was moved, and how well its place is known after."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,14 +28,17 @@ class ClickReport:
 
     def indices(self, uv):
         """Which clicks picks (k, 2) became: (k,), −1 for those that took no part."""
-        known = {(u, v): k for k, (u, v) in enumerate(self.uv.tolist())}
         points = np.asarray(uv, dtype=np.float64).reshape(-1, 2).tolist()
-        return np.array([known.get((u % 1.0, v), -1) for u, v in points], dtype=int)
+        return np.array([self._known.get((u % 1.0, v), -1) for u, v in points], dtype=int)
 
-    def half_axes(self, index):
-        """Half axes (3, 2) [rad] of a click's ellipse of one standard deviation, tangent to the sphere."""
-        variances, axes = np.linalg.eigh(self.covariance[index])
-        return self.tangents[index] @ (axes * np.sqrt(np.maximum(variances, 0.0)))
+    @cached_property
+    def _known(self):
+        return {(u, v): k for k, (u, v) in enumerate(self.uv.tolist())}
+
+    def half_axes(self):
+        """Half axes (n, 3, 2) [rad] of the ellipses of one standard deviation, tangent to the sphere."""
+        variances, axes = np.linalg.eigh(self.covariance)
+        return self.tangents @ (axes * np.sqrt(np.maximum(variances, 0.0))[:, None])
 
 
 def calibrate_with_report(picks, image_size):

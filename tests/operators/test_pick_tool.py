@@ -179,6 +179,14 @@ def test_floor_lines_go_on_and_a_deleted_line_goes():
     assert len(points(tool)) == 4
 
 
+def test_fast_clicks_are_clicks():
+    tool = new_tool()
+    for uv in RUG:
+        mouse(tool, uv, "LEFTMOUSE", "DOUBLE_CLICK")
+        mouse(tool, uv, "LEFTMOUSE", "RELEASE")
+    assert points(tool) == [pytest.approx(uv) for uv in RUG]
+
+
 def test_tab_goes_through_all_points():
     tool = with_rug()
     seen = []

@@ -42,17 +42,17 @@ def test_a_great_circle_on_the_flat_image_reaches_both_borders():
     assert (top - middle, middle - bottom) == pytest.approx((0.4 / np.pi * 200,) * 2, abs=0.1)
 
 
-def test_a_side_across_the_seam_does_not_cross_the_image():
-    from expanded_panoramas.ui.panorama_curves import curve_pixels, outline
+def test_sides_across_the_seam_do_not_cross_the_image():
+    from expanded_panoramas.ui.panorama_curves import curve_pixels, segments
 
     corners = np.array([[-3.0, 0.5, 0.2], [-3.0, -0.5, 0.2], [-3.0, -0.5, -0.2]])
-    pixels = curve_pixels(
-        image_canvas(), outline(corners / np.linalg.norm(corners, axis=1)[:, None], closed=True)
-    )
+    corners /= np.linalg.norm(corners, axis=1)[:, None]
+    pixels = curve_pixels(image_canvas(), segments(corners, np.roll(corners, -1, axis=0)))
     x = pixels[np.isfinite(pixels).all(axis=1)][:, 0] - 10
     assert ((x < 15) | (x > 385)).all()
     assert x.min() < 2
     assert x.max() > 397
+    assert steps(pixels).max() < 3  # nothing joins one side's end with the next one's start
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.5, 2.0, 4.0])
@@ -69,11 +69,12 @@ def test_straight_lines_are_straight_in_a_view(turn):
     assert np.linalg.svd(offsets, compute_uv=False)[1] < 1e-6 * np.abs(offsets).max() * len(shown)
 
 
-def test_a_segment_ends_where_it_should():
-    from expanded_panoramas.ui.panorama_curves import segment
+def test_segments_end_where_they_should():
+    from expanded_panoramas.ui.panorama_curves import segments
 
-    first, second = np.array([1.0, 0, 0]), np.array([0, 0.6, -0.8])
-    line = segment(first, second)
-    assert line[0] == pytest.approx(first)
-    assert line[-1] == pytest.approx(second)
-    assert len(segment(first, first)) == 2
+    first = np.array([[1.0, 0, 0], [0, 0, 1]])
+    second = np.array([[0, 0.6, -0.8], [0, 0, 1]])
+    lines = segments(first, second)
+    assert lines[:, 0] == pytest.approx(first)
+    assert lines[:, -1] == pytest.approx(second)
+    assert np.linalg.norm(lines, axis=-1) == pytest.approx(1)
