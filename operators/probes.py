@@ -2,6 +2,7 @@
 
 import bmesh
 import bpy
+from mathutils import Matrix, Vector
 
 from ..cycles_integration.node_trees import add
 from ..cycles_integration.place import place_of
@@ -96,7 +97,8 @@ class PANORAMA_OT_camera_from_view(Reporting, bpy.types.Operator):
         if view.view_perspective != "PERSP":
             raise ValueError("this view is orthographic or a camera's: turn it to perspective (Numpad 5)")
         camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-        camera.matrix_world = view.view_matrix.inverted()
+        back = view.view_rotation @ Vector((0, 0, view.view_distance))
+        camera.matrix_world = Matrix.LocRotScale(view.view_location + back, view.view_rotation, None)
         if self.at_origin:
             camera.location = place_of(context.scene).origin.matrix_world.translation
         # A view is cut out of twice the film of a camera: its lens of 50 mm sees what one of 25 mm does.

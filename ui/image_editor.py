@@ -48,4 +48,16 @@ class PANORAMA_PT_shape_points(_InImageEditor, bpy.types.Panel):
         draw_shapes(self.layout, context, context.scene.panorama_set, from_cursor=True)
 
 
-classes = (PANORAMA_PT_cursor, PANORAMA_PT_pick_points, PANORAMA_PT_shape_points)
+class PANORAMA_PT_by_click(_InImageEditor, bpy.types.Panel):
+    """What a click on the picture does once it is calibrated."""
+
+    bl_label = "By a Click"
+
+    def draw(self, context):
+        """Press the button, then click."""
+        column = self.layout.column(align=True)
+        column.operator("panorama.send_to_place", icon="TRACKER")
+        column.operator("panorama.pick_sun", icon="EYEDROPPER")
+
+
+classes = (PANORAMA_PT_cursor, PANORAMA_PT_by_click, PANORAMA_PT_pick_points, PANORAMA_PT_shape_points)
