@@ -54,6 +54,10 @@ class DrawnShape:
         """Whether it may have one."""
         return self.kind in (ROOM, "walls")
 
+    def toggle_ceiling(self):
+        """Close or open what has walls."""
+        self.ceiling = not self.ceiling and self.has_ceiling
+
     @property
     def role(self):
         """The role of the part that is drawn now."""

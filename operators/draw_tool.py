@@ -96,15 +96,16 @@ class DrawTool(Tool):
 
     def _act(self, on, xy, event):
         if event.type == "LEFTMOUSE":
-            return self._press(on, xy)
+            closes_twice = event.value == "DOUBLE_CLICK" and self.shape.base is not None
+            return RUNNING if closes_twice else self._press(on, xy)
         actions = {
             "RIGHTMOUSE": lambda: CANCEL,
             "ESC": lambda: CANCEL,
             "RET": self._enter,
             "NUMPAD_ENTER": self._enter,
             "BACK_SPACE": self._take_back,
-            "R": self._next_role,
-            "C": self._toggle_ceiling,
+            "R": lambda: self._change(self.shape.next_role),
+            "C": lambda: self._change(self.shape.toggle_ceiling),
         }
         if event.type in actions and not event.ctrl:
             return actions[event.type]()
@@ -230,19 +231,12 @@ class DrawTool(Tool):
         if self.typed:
             self.typed = self.typed[:-1]
         elif self.takes_numbers:
-            self.push()
-            self.shape.take_back()
+            self._change(self.shape.take_back)
         return RUNNING
 
-    def _next_role(self):
+    def _change(self, change):
         self.push()
-        self.shape.next_role()
-        return RUNNING
-
-    def _toggle_ceiling(self):
-        if self.shape.has_ceiling:
-            self.push()
-            self.shape.ceiling = not self.shape.ceiling
+        change()
         return RUNNING
 
     def _type(self, event):

@@ -8,6 +8,7 @@ from known_room import CAMERA_HEIGHT, WORLD_FROM_PANORAMA
 from expanded_panoramas.ibl_toolkit.calibration.calibration import Calibration
 from expanded_panoramas.ibl_toolkit.drawn_shape import DrawnShape
 from expanded_panoramas.ibl_toolkit.stand import Stand
+from expanded_panoramas.ibl_toolkit.views import View
 from expanded_panoramas.operators.canvas import ImageCanvas, ViewCanvas
 from expanded_panoramas.operators.draw_tool import DrawTool
 from expanded_panoramas.operators.lengths import Lengths
@@ -20,8 +21,6 @@ FLAT = ImageCanvas(np.array([20.0, 40.0]), np.array([4096.0, 2048.0]))
 
 def look_from(eye, target, size=(800, 600)):
     """A ViewCanvas at (3,) that looks at (3,) [m], 90° wide."""
-    from expanded_panoramas.ibl_toolkit.views import View
-
     back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
     right = np.cross((0, 0, 1), back)
     right /= np.linalg.norm(right)
@@ -29,9 +28,18 @@ def look_from(eye, target, size=(800, 600)):
     view_from_world[:3, :3] = [right, np.cross(back, right), back]
     view_from_world[:3, 3] = -view_from_world[:3, :3] @ eye
     window = np.array([[1, 0, 0, 0], [0, size[0] / size[1], 0, 0], [0, 0, -1, -0.1], [0, 0, -1, 0]], float)
-    return ViewCanvas(
-        View.from_matrices(window, view_from_world, STAND.world_from_panorama, STAND.camera_height, size)
-    )
+    return _canvas(window, view_from_world, size)
+
+
+def elevation(size=(800, 600)):
+    """The orthographic ViewCanvas of Blender's front view, 8 m wide, whose plane is y = 0."""
+    view_from_world = np.eye(4)[[0, 2, 1, 3]] * [[1], [1], [-1], [1]]
+    return _canvas(np.diag([0.25, 0.25 * size[0] / size[1], 0.01, 1]), view_from_world, size)
+
+
+def _canvas(window, view_from_world, size):
+    stand = STAND.world_from_panorama, STAND.camera_height
+    return ViewCanvas(View.from_matrices(window, view_from_world, *stand, size))
 
 
 class Hand:

@@ -9,7 +9,7 @@ from expanded_panoramas.ibl_toolkit.panorama_set import PanoramaSet
 from expanded_panoramas.ibl_toolkit.reconstruction import reconstruct
 
 pytest.importorskip("bpy")
-from drawing_hand import CALIBRATION, METRES, STAND, Hand, look_from
+from drawing_hand import CALIBRATION, METRES, STAND, Hand, elevation, look_from
 
 CORNERS = np.array([[3.0, 2.0], [-2.0, 2.0], [-2.0, -2.5], [3.0, -2.5]])
 CEILING = 2.7
@@ -45,6 +45,22 @@ def test_from_beside_the_panorama_it_is_the_same_room():
     hand = drawn_room(on=BESIDE)
     hand.click((1.0, -2.5, CEILING))  # the wall nearest to the eye
     assert pieces(hand)["walls"].size_m == pytest.approx((5, 4.5, CEILING), abs=DRAWN)
+
+
+def test_a_height_is_taken_from_an_elevation():
+    hand = Hand("box")
+    hand.click((1.0, -0.5), (1.0, 0.5), (2.0, 0.2))
+    hand.on = elevation()
+    assert hand.click((1.4, -0.5, 0.8)) == "CONFIRM"
+    assert pieces(hand)["box"].size_m == pytest.approx((1, 1, 0.8), abs=DRAWN)
+
+
+def test_a_double_click_does_not_raise_what_it_closes():
+    hand = Hand("box")
+    hand.click((1.0, -0.5), (1.0, 0.5), (2.0, 0.2))
+    hand.event("LEFTMOUSE", "DOUBLE_CLICK")
+    assert hand.event("LEFTMOUSE", "RELEASE") == "PASS"
+    assert hand.click((1.0, 0.1, 0.8)) == "CONFIRM"
 
 
 @pytest.mark.parametrize("over", ["middle of a side", "corner", "beside"])
