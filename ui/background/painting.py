@@ -48,7 +48,7 @@ def paint():
     view = view_of(context.scene, context.region, context.region_data)
     texture = gpu.texture.from_image(image)
     gain = 2.0**context.scene.panorama_view.exposure
-    fill = theme.background_of(context.space_data, context.scene, context.preferences.themes)
+    fill = _fill_of(context)
     shown = passes(context.space_data.shading, context.scene.panorama_view.opacity, covers_meshes(view))
     with _state_given_back():
         for where, blend, share in shown:
@@ -117,18 +117,25 @@ def _surfaces(where, context):
         yield world, np.insert(world, 3, 1, axis=1) @ np.array(region_data.perspective_matrix).T
 
 
+def _fill_of(context):
+    """The theme's colour (4,) in the overlays; within a clipping border it hides the scene, by its alpha."""
+    themes, is_clipped = context.preferences.themes, context.region_data.use_clip_planes
+    colour = theme.background_of(context.space_data, context.scene, themes, is_clipped=is_clipped)
+    return *colour, float(is_clipped)
+
+
 def _take_away(fill, share, world):
-    """Subtract a share of the theme's colour from the overlays, which are the framebuffer in use."""
+    """Subtract a share of the theme's colour (4,) from the overlays, which are the framebuffer in use."""
     plain = gpu.shader.from_builtin("UNIFORM_COLOR")
     gpu.state.blend_set("SUBTRACT")
-    excess = Color([share * (component + ROUNDING) for component in fill])
-    plain.uniform_float("color", (*excess.from_scene_linear_to_srgb(), 0.0))
+    excess = Color([share * (component + ROUNDING) for component in fill[:3]])
+    plain.uniform_float("color", (*excess.from_scene_linear_to_srgb(), share * fill[3]))
     with gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
         if world is None:
             gpu.matrix.load_identity()
             gpu.matrix.load_projection_matrix(Matrix.Identity(4))
             world = shader.COVER[:, :3]
-        batch_for_shader(plain, "TRIS", {"pos": np.asarray(world, np.float32)}).draw(plain)
+        batch_for_shader(plain, "TRIS", {"pos": np.ascontiguousarray(world, np.float32)}).draw(plain)
 
 
 @contextmanager

@@ -28,7 +28,7 @@ def draw(view, texture: gpu.types.GPUTexture, gain: float, share: float, corners
     for name, value in constants(view, gain, share).items():
         shader.uniform_float(name, value)
     shader.uniform_sampler("panorama", texture)
-    batch_for_shader(shader, "TRIS", {"corner": np.asarray(corners, np.float32)}).draw(shader)
+    batch_for_shader(shader, "TRIS", {"corner": np.ascontiguousarray(corners, np.float32)}).draw(shader)
 
 
 def constants(view, gain: float, share: float) -> dict[str, tuple[float, ...]]:

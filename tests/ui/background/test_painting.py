@@ -87,6 +87,9 @@ def test_colour_behind_all_objects(view_3d):
     gradients.background_type = "LINEAR"
     assert background_of(space, scene, themes) == pytest.approx((0.132868, 0.318547, 0.033105), abs=1e-5)
     gradients.background_type = "SINGLE_COLOR"
+    themes[0].view_3d.clipping_border_3d = 0, 0.6, 0, 1
+    clipped = background_of(space, scene, themes, is_clipped=True)
+    assert clipped == pytest.approx((0.132868, 0.318547, 0), abs=1e-5)
     space.shading.type, space.shading.background_type = "SOLID", "VIEWPORT"
     space.shading.background_color = 0.25, 0.5, 0.75
     assert background_of(space, scene, themes) == (0.25, 0.5, 0.75)
