@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import bpy
@@ -12,7 +13,29 @@ CHARACTERS = {
     **{f"NUMPAD_{digit}": str(digit) for digit in range(10)},
     **{"PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ","},
 }
-IN_UNITS = set("abcdefghijklmnopqrstuvwxyzµ'\" ")
+UNITS = (
+    "km",
+    "hm",
+    "dam",
+    "dm",
+    "cm",
+    "mm",
+    "um",
+    "µm",
+    "m",
+    "mi",
+    "ft",
+    "in",
+    "yd",
+    "thou",
+    "mil",
+    "'",
+    '"',
+)
+IN_UNITS = {" ", *"".join(UNITS)}
+NUMBER, UNIT = r"(?:\d+\.?\d*|\.\d+) *", f"(?:{'|'.join(UNITS)}) *"
+LENGTH = re.compile(f"(?:{NUMBER}{UNIT})+|{NUMBER}")
+"""Such as 2.5, 250 cm, 6'2\"; what else Blender would evaluate, it prints errors of, and goes wrong with."""
 SYMBOLS = {
     "KILOMETERS": "km",
     "METERS": "m",
@@ -47,10 +70,9 @@ class Lengths:
     def value(self, typed) -> float:
         """The length that was typed, in units of the world [m]. Raises ValueError where it is none."""
         typed = typed.replace(",", ".").strip()
-        try:
-            found = bpy.utils.units.to_value(self.system, "LENGTH", typed, str_ref_unit=self.unit or None)
-        except ValueError:
-            raise ValueError(f"'{typed}' is no length, such as 2.5 or 250 cm") from None
+        if not LENGTH.fullmatch(typed):
+            raise ValueError(f"'{typed}' is no length, such as 2.5 or 250 cm")
+        found = bpy.utils.units.to_value(self.system, "LENGTH", typed, str_ref_unit=self.unit or None)
         length = found / self.scale
         if not 0 < length < LONGEST:
             raise ValueError(f"'{typed}': a length must be above 0 and below {LONGEST:.0f} m")

@@ -151,9 +151,9 @@ def test_a_number_that_is_none_is_refused():
     assert hand.enter() == "RUNNING"
     assert "above 0" in hand.tool.problem
     hand.event("BACK_SPACE")
-    hand.type("1x")
+    hand.type("1c")
     hand.enter()
-    assert "'1x' is no length" in hand.tool.problem
+    assert "'1c' is no length" in hand.tool.problem
 
 
 def test_three_points_on_a_line_take_the_last_back():
@@ -256,6 +256,10 @@ def test_the_scenes_units():
     assert inches.value("10") == pytest.approx(0.254)
     assert inches.text(0.254) == "10.000 in"
     assert METRES.value("2,5") == 2.5
+    assert METRES.value("6'2\"") == pytest.approx(1.8796)
+    for typed in ("", "2.5.1", "2e", "2*3", "2 m 3", "."):
+        with pytest.raises(ValueError, match="is no length"):
+            METRES.value(typed)
     assert METRES.text(2.5) == "2.5 m"
     assert Lengths("METRIC", "cm", 0.1).value("25") == pytest.approx(2.5)
 
