@@ -13,25 +13,7 @@ CHARACTERS = {
     **{f"NUMPAD_{digit}": str(digit) for digit in range(10)},
     **{"PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ","},
 }
-UNITS = (
-    "km",
-    "hm",
-    "dam",
-    "dm",
-    "cm",
-    "mm",
-    "um",
-    "µm",
-    "m",
-    "mi",
-    "ft",
-    "in",
-    "yd",
-    "thou",
-    "mil",
-    "'",
-    '"',
-)
+UNITS = "km hm dam dm cm mm um µm m mi ft in yd thou mil ' \"".split()
 IN_UNITS = {" ", *"".join(UNITS)}
 NUMBER, UNIT = r"(?:\d+\.?\d*|\.\d+) *", f"(?:{'|'.join(UNITS)}) *"
 LENGTH = re.compile(f"(?:{NUMBER}{UNIT})+|{NUMBER}")
