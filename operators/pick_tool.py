@@ -42,6 +42,7 @@ class PickTool(tools.Tool):
         ("EVENT_CTRL", "Snap the Other Way"),
         ("EVENT_S", "Snap to Corners"),
         ("EVENT_TAB", "Next Point"),
+        ("EVENT_P", "Plane / Axis"),
         ("EVENT_LEFT_ARROW", "Nudge (Shift: Finer)"),
         ("EVENT_X", "Delete Point"),
         ("EVENT_RETURN", "Confirm"),
@@ -108,6 +109,9 @@ class PickTool(tools.Tool):
             self.editing.select_next(-1 if event.shift else 1)
         elif event.type in ("X", "DEL") and not event.ctrl:
             self._delete()
+        elif event.type == "P" and self.editing.has_plane:
+            self.push()
+            self.editing.next_plane()
         elif event.type == "S" and not event.ctrl:
             self.snapping = not self.snapping
         else:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..ibl_toolkit.calibration.picks import AXES, PLANES
 from . import conversion
 from .picks_copy import PickCopy, PicksCopy, PointCopy
 
@@ -105,6 +106,19 @@ class PicksEditing:
             self.select(indices[(indices.index(self.active) + step) % len(indices)])
         else:
             self.select(indices[0 if step > 0 else -1])
+
+    @property
+    def has_plane(self) -> bool:
+        """Whether the pick that is being filled has a plane or an axis."""
+        return self.target >= 0 and self.copied.picks[self.target].kind in ("RECTANGLE", "PARALLELS")
+
+    def next_plane(self):
+        """Let the rectangle lie in the next plane, the floor lines run along the other axis."""
+        pick = self.copied.picks[self.target]
+        if pick.kind == "RECTANGLE":
+            pick.plane = PLANES[(PLANES.index(pick.plane) + 1) % len(PLANES)]
+        else:
+            pick.axis = AXES[(AXES.index(pick.axis) + 1) % len(AXES)]
 
     def set_scale(self, metres):
         """Set the known length, or the camera height where there is none [m]."""

@@ -16,7 +16,7 @@ PIXELS_PER_ROW = 8
 LEAST_ZOOM = 2.5
 """… and how much larger than around it."""
 SAMPLES = 84
-FRAME, CROSS, CORNER = (0, 0, 0, 0.8), (1, 1, 1, 0.7), (1, 0.85, 0.1, 1)
+FRAME, CROSS, CORNER = (0, 0, 0, 0.6), (1, 1, 1, 0.9), (1, 0.85, 0.1, 1)
 
 
 def draw(canvas, xy, image, exposure, high, snap):
@@ -38,7 +38,9 @@ def draw(canvas, xy, image, exposure, high, snap):
     middle = low + size / 2
     for along in (np.array([1, 0]), np.array([0, 1])):
         for side in (-1, 1):
-            drawing.lines(middle + side * np.outer((4, size / 2), along), CROSS, 1)
+            arm = middle + side * np.outer((4, size / 2), along)
+            drawing.lines(arm, FRAME, 3)
+            drawing.lines(arm, CROSS, 1)
     if snap is not None and snap.is_corner:
         basis = np.column_stack([across, up])
         offset = np.linalg.lstsq(basis, direction_from_uv(snap.uv) - ahead, rcond=None)[0] * zoom

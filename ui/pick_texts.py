@@ -7,7 +7,7 @@ from ..operators.conversion import pick_label
 from . import drawing
 from .texts import LETTER
 
-PLAIN, GOOD, WARNING, ERROR = (1, 1, 1, 1), (0.6, 1, 0.6, 1), (1, 0.8, 0.3, 1), (1, 0.5, 0.4, 1)
+PLAIN, GOOD, WARNING, ERROR = (1, 1, 1, 1), (0.6, 1, 0.6, 1), (1, 0.8, 0.3, 1), (1, 0.65, 0.55, 1)
 TEXT, LINE, MARGIN = 12, 24, 16
 """Size of letters, distance of lines, and from the border [px at a UI scale of 1]."""
 
@@ -61,7 +61,7 @@ def _task(tool):
     if editing.target < 0:
         return f"Drag points. {snapping} (S)"
     pick = editing.copied.picks[editing.target]
-    label = pick_label(pick, editing.target).partition(": ")[2]
+    label = pick_label(pick, editing.target).partition(": ")[2] + (" (P)" if editing.has_plane else "")
     if pick.missing:
         return f"{label}: click point {pick.missing[0] + 1} of {len(pick.points)}. {snapping} (S)"
     more = "click the next line, " if editing.adds == pick.kind else ""

@@ -179,6 +179,21 @@ def test_floor_lines_go_on_and_a_deleted_line_goes():
     assert len(points(tool)) == 4
 
 
+def test_p_turns_floor_into_ceiling_and_wall():
+    tool = with_rug()
+    seen = []
+    for _ in range(3):
+        key(tool, "P", unicode="p")
+        seen.append(tool.editing.copied.picks[0].plane)
+    assert seen == ["CEILING", "WALL", "FLOOR"]
+    tool.undo()
+    assert tool.editing.copied.picks[0].plane == "WALL"
+    lines = new_tool("PARALLELS")
+    key(lines, "P", unicode="p")
+    assert lines.editing.copied.picks[0].axis == "Y"
+    assert key(new_tool("VERTICAL"), "P", unicode="p") == "RUNNING"
+
+
 def test_fast_clicks_are_clicks():
     tool = new_tool()
     for uv in RUG:

@@ -26,7 +26,7 @@ def said(a_tool, factor=0):
 
 
 def test_it_says_what_to_click_and_what_the_picks_give():
-    assert "Floor rectangle: click point 3 of 4. Snapping to corners" in said(tool(2))
+    assert "Floor rectangle (P): click point 3 of 4. Snapping to corners" in said(tool(2))
     done = said(tool(), factor=20)
     assert "Enter to calibrate" in done
     assert "Tilt 0.0" in done
