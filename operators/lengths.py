@@ -13,9 +13,9 @@ CHARACTERS = {
     **{f"NUMPAD_{digit}": str(digit) for digit in range(10)},
     **{"PERIOD": ".", "NUMPAD_PERIOD": ".", "COMMA": ","},
 }
-UNITS = "km hm dam dm cm mm um µm m mi ft in yd thou mil ' \"".split()
-IN_UNITS = {" ", *"".join(UNITS)}
-NUMBER, UNIT = r"(?:\d+\.?\d*|\.\d+) *", f"(?:{'|'.join(UNITS)}) *"
+UNITS = "km|hm|dam|dm|cm|mm|um|µm|m|mi|ft|in|yd|thou|mil|'|\""
+IN_UNITS = {" ", *UNITS.replace("|", "")}
+NUMBER, UNIT = r"(?:\d+\.?\d*|\.\d+) *", f"(?:{UNITS}) *"
 LENGTH = re.compile(f"(?:{NUMBER}{UNIT})+|{NUMBER}")
 """Such as 2.5, 250 cm, 6'2\"; what else Blender would evaluate, it prints errors of, and goes wrong with."""
 SYMBOLS = {
