@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-BEGINS = 10.0
-"""Distance in eye heights, 5.7° below the horizon: there the grid's squares are a few pixels high."""
+BEGINS = 6.0
+"""Distance in eye heights, 9.5° below the horizon: from there on the grid is dense."""
 ABOVE = 1.5
 """Height above the floor [px of the view]: a line's pixels lie up to half a pixel beside it."""
 SEGMENTS = 64
@@ -22,7 +22,7 @@ def corners(eye, pixel: float) -> np.ndarray:
     the lowest pixels. pixel: tangent of the angle that a pixel of the view spans.
 
     >>> corners((1, 2, 2), 0.001)[0].round(6).tolist()
-    [21.0, 2.0, 0.03]
+    [13.0, 2.0, 0.018]
     """
     turns = np.linspace(0, 2 * np.pi, SEGMENTS + 1)
     circle = np.stack([np.cos(turns), np.sin(turns)], axis=-1)

@@ -1,4 +1,4 @@
-"""Where the panorama goes over the grid: beyond ten eye heights, one and a half pixels above the floor."""
+"""Where the panorama goes over the grid: beyond six eye heights, one and a half pixels above the floor."""
 
 import numpy as np
 import pytest
@@ -8,10 +8,10 @@ from expanded_panoramas.ui.background.far_floor import corners
 EYE, PIXEL = np.array([2.0, -1.0, 1.6]), 0.002
 
 
-def test_it_reaches_from_ten_eye_heights_to_the_horizon():
+def test_it_reaches_from_six_eye_heights_to_the_horizon():
     triangles = corners(EYE, PIXEL)
     distances = np.linalg.norm(triangles[:, :2] - EYE[:2], axis=1)
-    assert distances.min() == pytest.approx(16)
+    assert distances.min() == pytest.approx(9.6)
     assert triangles[:, 2].max() == pytest.approx(EYE[2])
 
 
@@ -26,6 +26,6 @@ def test_it_goes_all_around():
     triangles = corners(EYE, PIXEL).reshape(-1, 3, 3)[..., :2]
     one, other = (triangles[:, i] - triangles[:, 0] for i in (1, 2))
     doubled = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-    outer, inner = EYE[2] / (1.5 * PIXEL), 16
+    outer, inner = EYE[2] / (1.5 * PIXEL), 9.6
     assert (doubled > 0).all()
     assert doubled.sum() / 2 == pytest.approx(np.pi * (outer**2 - inner**2), rel=2e-3)  # of 64 segments
