@@ -17,6 +17,9 @@ import numpy as np
 PARALLEL = 1e-6
 """Sine of the angle to the floor below which a ray never meets it."""
 
+AT_ORIGIN = 0.01
+"""An eye so many camera heights from the panorama's origin is at it."""
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -71,6 +74,11 @@ class View:
     def is_perspective(self):
         """Whether rays spread from one point."""
         return bool(self.ray_x.any())
+
+    @property
+    def has_floor_in_place(self):
+        """Whether the picture shows the floor where it is: from the panorama's origin, and in plans."""
+        return not self.is_perspective or bool(np.linalg.norm(self.eye) <= AT_ORIGIN * self.camera_height)
 
     def rays_at(self, xy):
         """Starts [m] and directions of the rays, (..., 3) each, at (..., 2) [px] as in `directions_at`."""

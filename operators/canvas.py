@@ -47,6 +47,11 @@ class ViewCanvas:
             return start, direction
         return start - FAR * direction / np.linalg.norm(direction), direction
 
+    @property
+    def has_floor_in_place(self):
+        """Whether the picture shows the floor where rays meet it."""
+        return self.view.has_floor_in_place
+
     def curve_of(self, points):
         """A curve's pixels (n, 2) through points (n, 3) of the panorama frame [m]; NaN breaks it."""
         return self.view.pixels_of_points(points) - 0.5
@@ -58,6 +63,7 @@ class ImageCanvas:
 
     corner: np.ndarray
     size: np.ndarray
+    has_floor_in_place = True
 
     def uv_at(self, xy):
         """The image point (2,) shown at (2,) [region px]; None outside of the image."""

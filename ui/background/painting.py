@@ -27,8 +27,6 @@ EMPTY, FILLED, ANYWHERE = "LESS_EQUAL", "GREATER", "NONE"
 """Depth tests of something at the far plane: where nothing is before it, where something is, no test."""
 ROUNDING = 0.005
 """Beyond the rounding to 8 bits, and the noise, that Blender's overlays add to the theme's colour."""
-AT_ORIGIN = 0.01
-"""An eye so many camera heights from the panorama's origin is at it."""
 _scene_layer = None
 
 
@@ -86,9 +84,7 @@ def view_of(scene, region, region_data) -> View:
 
 def covers_meshes(view) -> bool:
     """Whether a tool needs the picture more than the meshes that stand where it shows what they are."""
-    is_plan = not view.is_perspective
-    at_origin = np.linalg.norm(view.eye) <= AT_ORIGIN * view.camera_height
-    return active_tool() is not None and bool(is_plan or at_origin)
+    return active_tool() is not None and view.has_floor_in_place
 
 
 def passes(shading, opacity: float, covers=False) -> list[tuple[str, str, float]]:
