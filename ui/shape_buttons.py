@@ -21,8 +21,10 @@ class PANORAMA_MT_draw_shape(bpy.types.Menu):
             self.layout.operator("panorama.draw_shape", text=name, icon=icon).kind = kind
 
 
-def draw_buttons(layout):
-    """A button for the room, and the menu."""
+def draw_buttons(layout, context):
+    """A button for the room, and the menu; in a 3D View first the one that shows the floor in its place."""
+    if context.space_data is not None and context.space_data.type == "VIEW_3D":
+        layout.operator("panorama.look_around", icon="ORIENTATION_GIMBAL")
     row = layout.row(align=True)
     row.operator("panorama.draw_shape", text="Draw Room", icon=ICONS["room"]).kind = "room"
     row.menu("PANORAMA_MT_draw_shape", text="Draw Shape", icon="GREASEPENCIL")

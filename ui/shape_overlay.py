@@ -18,7 +18,8 @@ from . import drawing
 
 COLOURS = {role: tuple(value / 255 for value in colour) for role, colour in ROLE_COLOURS.items()}
 BUILT_ALPHA = 0.55
-WRONG = (1, 0.45, 0.4, 1)
+WRONG, CAUTION = (1, 0.45, 0.4, 1), (1, 0.8, 0.3, 1)
+ASTRAY = "Seen from here, the picture does not lie on the floor: Look Around shows it in its place"
 BESIDE = np.array([16.0, 12.0])
 """Where text stands from what it is about [px of a plain screen]."""
 LETTER = (6.5, 14)
@@ -36,7 +37,7 @@ def draw(context, canvas):
     if isinstance(tool, DrawTool):
         _draw_tool(canvas, tool)
         if tool.region == context.region.as_pointer():
-            _draw_at_mouse(context, tool)
+            _draw_at_mouse(context, canvas, tool)
 
 
 def _draw_tool(canvas, tool):
@@ -56,10 +57,11 @@ def _draw_tool(canvas, tool):
     _draw_labels(reversed(texts))
 
 
-def _draw_at_mouse(context, tool):
+def _draw_at_mouse(context, canvas, tool):
     """What was typed, and what is wrong, beside the mouse and within the region."""
     problem = tool.problem or tool.preview()[3]
-    lines = [(line, WRONG) for line in reversed(textwrap.wrap(problem, WIDEST))]
+    said = [(problem, WRONG), ("" if canvas.has_floor_in_place or problem else ASTRAY, CAUTION)]
+    lines = [(line, colour) for text, colour in said for line in reversed(textwrap.wrap(text, WIDEST))]
     if tool.typed:
         lines.insert(0, (tool.typed, (1, 1, 1, 1)))
     scale = drawing.scale()

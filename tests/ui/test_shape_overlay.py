@@ -66,6 +66,16 @@ def test_text_at_the_mouse_is_in_its_region_only(drawn):
     assert "above the horizon: the floor lies below it" in drawn(hand.tool, FLAT).texts
 
 
+def test_it_says_where_the_picture_does_not_lie_on_the_floor(drawn):
+    beside = look_from((4.0, -7.0, 5.0), (0.5, 0.0, 0.5))
+    at_origin = look_from((0, 0, STAND.camera_height), (1.0, 0, 0))
+    for canvas, astray in ((beside, True), (at_origin, False), (FLAT, False)):
+        hand = Hand("square", on=canvas)
+        hand.move((1.2, 0.1))
+        hand.tool.xy, hand.tool.region = hand.xy, 7
+        assert any("Look Around" in text for text in drawn(hand.tool, canvas).texts) == astray
+
+
 def test_height_and_typed_text(drawn):
     hand = Hand("box")
     hand.click((1, -0.5), (1, 0.5), (2, 0.5))
