@@ -44,7 +44,7 @@ class PANORAMA_PT_shape_points(_InImageEditor, bpy.types.Panel):
 
     def draw(self, context):
         """Drawn with the mouse, or the list, with buttons for points."""
-        draw_buttons(self.layout)
+        draw_buttons(self.layout, context)
         draw_shapes(self.layout, context, context.scene.panorama_set, from_cursor=True)
 
 

@@ -127,7 +127,7 @@ class PANORAMA_PT_shapes(Step, bpy.types.Panel):
         """The button, and how it went."""
         state = context.scene.panorama_set
         self.say(context, progress.drawing_missing(context.scene) or progress.shapes_missing(context.scene))
-        draw_buttons(self.layout)
+        draw_buttons(self.layout, context)
         self.layout.operator("panorama.build", icon="MESH_CUBE")
         built = [shape for shape in state.shapes if shape.is_built]
         if built:
