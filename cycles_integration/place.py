@@ -140,28 +140,51 @@ def sort_objects(scene: bpy.types.Scene, place: Place):
     Raises ValueError, and moves nothing, where a real mesh is linked from another file.
     """
     roles.refuse_linked_surfaces(scene)
+    inside = {scene.collection, *scene.collection.children_recursive}
+    _refuse_linked_collections(roles.real_objects(scene), inside)
     collections = {roles.SUPPORT: place.support, roles.ENVIRONMENT: place.environment}
     for thing in roles.real_objects(scene):
-        _move(thing, collections[thing.panorama_role])
-    ours = {place.collection, *place.collection.children_recursive}
+        _move(thing, collections[thing.panorama_role], inside)
+    ours = {scene.collection, place.collection, *place.collection.children_recursive}
     for thing in list(scene.objects):
-        if thing.type != "MESH" or thing.panorama_role == roles.SYNTHETIC:
-            stray = set(thing.users_collection) <= ours | {scene.collection}
-            if stray and thing not in (place.origin, place.catcher) and thing.name not in place.suns.objects:
-                _move(thing, _synthetic_collection(scene))
+        if thing.type == "MESH" and thing.panorama_role != roles.SYNTHETIC:
+            continue
+        if thing in (place.origin, place.catcher) or place.suns in thing.users_collection:
+            continue
+        strays = ours.intersection(thing.users_collection)
+        if strays == inside.intersection(thing.users_collection):
+            _move(thing, _synthetic_collection(scene), inside)
+        for collection in strays.intersection(thing.users_collection):
+            collection.objects.unlink(thing)
 
 
-def _move(thing, collection):
-    for other in thing.users_collection:
-        if other != collection:
-            other.objects.unlink(thing)
-    if thing.name not in collection.objects:
+def _refuse_linked_collections(things, inside):
+    """What lies in a collection of another file cannot be taken out of it."""
+    for thing in things:
+        for collection in inside.intersection(thing.users_collection):
+            if not _is_own(collection):
+                raise ValueError(
+                    f"'{thing.name}' lies in the collection '{collection.name}' of another file, so it "
+                    "cannot be sorted by its role: make the collection local, or the object synthetic"
+                )
+
+
+def _move(thing, collection, inside):
+    """Move an object within a scene, of which these are the collections; other scenes keep it."""
+    if collection not in thing.users_collection:
         collection.objects.link(thing)
+    for other in inside.intersection(thing.users_collection) - {collection}:
+        other.objects.unlink(thing)
 
 
 def _synthetic_collection(scene):
-    existing = (c for c in scene.collection.children if c.name.startswith("Synthetic"))
+    existing = (c for c in scene.collection.children if c.name.startswith("Synthetic") and _is_own(c))
     return next(existing, None) or _child_collection(scene.collection, "Synthetic")
+
+
+def _is_own(collection: bpy.types.Collection) -> bool:
+    """Whether a collection belongs to this file alone, so that objects can be put in and taken out."""
+    return collection.library is None and collection.override_library is None
 
 
 def _child_collection(parent, name):

@@ -65,6 +65,36 @@ def test_new_objects_and_real_meshes_are_sorted_apart(fresh_blend, place):
     assert scene.collection not in new.users_collection
 
 
+def test_a_new_object_stays_in_its_own_collection_and_leaves_the_root(fresh_blend, place):
+    """In the root it would be in every view layer, the empty place's too."""
+    from expanded_panoramas.cycles_integration.place import sort_objects
+
+    scene, here = place
+    own = fresh_blend.data.collections.new("own")
+    scene.collection.children.link(own)
+    new = fresh_blend.data.objects.new("new", fresh_blend.data.meshes.new("new"))
+    for collection in (own, scene.collection, here.support):
+        collection.objects.link(new)
+    sort_objects(scene, here)
+    assert new.users_collection == (own,)
+
+
+def test_sorting_leaves_other_scenes_alone(fresh_blend, place):
+    from expanded_panoramas.cycles_integration.place import sort_objects
+
+    scene, here = place
+    other = fresh_blend.data.scenes.new("other")
+    things = [fresh_blend.data.objects.new(n, fresh_blend.data.meshes.new(n)) for n in ("new", "scanned")]
+    things[1].panorama_role = "SUPPORT"
+    for thing in things:
+        scene.collection.objects.link(thing)
+        other.collection.objects.link(thing)
+    sort_objects(scene, here)
+    assert set(other.collection.objects) == set(things)
+    assert not set(scene.collection.objects) & set(things)
+    assert here.support in things[1].users_collection
+
+
 def test_a_scene_without_a_panorama_is_refused(fresh_blend):
     from expanded_panoramas.cycles_integration.place import place_of
 

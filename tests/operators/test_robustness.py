@@ -227,6 +227,21 @@ def test_overridden_objects_are_sent_and_keep_role_and_place_when_saved(fresh_bl
     assert shelf.panorama_role == "SYNTHETIC"
 
 
+def test_a_support_in_a_collection_of_another_file_is_refused(fresh_blend, library, tmp_path, quick):
+    bpy = fresh_blend
+    built(bpy, tmp_path)
+    with bpy.data.libraries.load(str(library), link=True) as (_, ours):
+        ours.collections = ["set"]
+    made = ours.collections[0].override_hierarchy_create(
+        bpy.context.scene, bpy.context.view_layer, do_fully_editable=True
+    )
+    shelf = next(thing for thing in made.all_objects if thing.name == "shelf")
+    shelf.data = shelf.data.copy()  # a mesh of its own
+    with pytest.raises(RuntimeError, match="'shelf' lies in the collection 'set' of another file"):
+        bpy.ops.panorama.prepare()
+    assert made in shelf.users_collection
+
+
 def test_an_overridden_support_on_a_linked_mesh_is_refused(fresh_blend, library, tmp_path, quick):
     bpy = fresh_blend
     built(bpy, tmp_path)
