@@ -107,6 +107,8 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
 
 def _give_pixels(tool, pixels):
     """Give a tool the image (H, W, 3) as half floats, while it already runs: the largest take a second."""
+    if pixels.shape[2] < 3:
+        pixels = np.repeat(pixels[..., :1], 3, axis=2)
     halves = np.empty(pixels.shape, np.float16)
     for row in range(0, len(pixels), BAND):
         if tools.active_tool() not in (tool, None):

@@ -361,6 +361,16 @@ def test_it_follows_the_sidebar(fresh_blend, tmp_path):
     assert tool.editing.copied.camera_height == 1.75
 
 
+@pytest.mark.parametrize("channels", [1, 3])
+def test_pixels_of_any_image(channels):
+    from expanded_panoramas.operators.pick_points import _give_pixels
+
+    tool = new_tool()
+    _give_pixels(tool, np.full((130, 260, channels), 1e9, np.float32))
+    assert tool.image.shape == (130, 260, 3)
+    assert np.isfinite(tool.image).all()
+
+
 def test_it_says_why_it_cannot(fresh_blend, tmp_path):
     bpy = fresh_blend
     with pytest.raises(RuntimeError, match="Open a panorama first"):
