@@ -60,7 +60,8 @@ def _draw_tool(canvas, tool):
 def _draw_at_mouse(context, canvas, tool):
     """What was typed, and what is wrong, beside the mouse and within the region."""
     problem = tool.problem or tool.preview()[3]
-    said = [(problem, WRONG), ("" if canvas.has_floor_in_place or problem else ASTRAY, CAUTION)]
+    is_known = canvas.has_floor_in_place or tool.takes_numbers  # once it has begun, it was read
+    said = [(problem, WRONG), ("" if is_known or problem else ASTRAY, CAUTION)]
     lines = [(line, colour) for text, colour in said for line in reversed(textwrap.wrap(text, WIDEST))]
     if tool.typed:
         lines.insert(0, (tool.typed, (1, 1, 1, 1)))
