@@ -13,8 +13,9 @@ from expanded_panoramas.ibl_toolkit.equirectangular import sample
 from expanded_panoramas.ibl_toolkit.views import View
 
 BLENDER = os.environ.get("BLENDER")
-MEAN, LARGEST = 0.05 / 255, 1 / 255
+MEAN, LARGEST = 0.05 / 255, 0.5 / 255
 """Of the difference in sRGB: the graphics card computes where a direction lies with fewer digits."""
+LARGEST_HALF = 65504
 SIZE = 96, 64
 
 
@@ -53,6 +54,13 @@ def noise(width, seed=0):
     return (rng.integers(0, 129, (width // 2, width, 3)) / 64).astype(np.float32)
 
 
+def sunny(width):
+    """A panorama with a sun that half floats cannot hold."""
+    image = noise(width)
+    image[width // 4, width // 2] = 3e5
+    return image
+
+
 def smooth(width):
     """A panorama without edges, so that means over pixels have no sharp places to differ at."""
     u, v = (np.arange(width) + 0.5) / width, (np.arange(width // 2) + 0.5) / (width // 2)
@@ -81,7 +89,8 @@ class Case:
         corners = np.stack([columns, rows - 1], axis=-1).astype(float)
         parts = (np.arange(self.steps) + 0.5) / self.steps
         points = [(x, y) for x in parts for y in parts]
-        mean = np.mean([sample(self.image, seen.directions_at(corners + p)) for p in points], axis=0)
+        held = np.minimum(self.image, LARGEST_HALF)
+        mean = np.mean([sample(held, seen.directions_at(corners + p)) for p in points], axis=0)
         opaque = np.ones((*mean.shape[:2], 1))
         return np.concatenate([mean * 2**self.exposure, opaque], axis=-1) * self.share
 
@@ -100,6 +109,7 @@ CASES = {
     "slanted": Case(parallel(3.0), looking(turn(50, 0, 30), eye=(0, 0, 4)), frame=turn(5, 5, 60)),
     "along the floor": Case(parallel(3.0), looking(FORWARD)),
     "brighter": Case(perspective(0.7), looking(FORWARD), image=noise(32) / 8, exposure=1.5),
+    "sun": Case(perspective(0.7), looking(FORWARD), image=sunny(32), exposure=-17),
     "mixed": Case(perspective(0.7), looking(FORWARD), share=0.25),
     "shrunk": Case(perspective(0.2), looking(FORWARD), 4, smooth(1024), size=(24, 16)),
     "shrunk by half": Case(perspective(0.1), looking(FORWARD), 2, smooth(1024), size=(16, 12)),
