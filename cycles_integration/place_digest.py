@@ -37,7 +37,8 @@ def digest_of_place(scene: bpy.types.Scene) -> str:
 def digest_of_image(scene: bpy.types.Scene) -> str:
     """The same text for as long as the place has the same panorama."""
     image = place_of(scene).image
-    return repr((image.name_full, image.filepath))  # its size would have it loaded
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    return repr((image.name_full, path))  # its size would have it loaded
 
 
 def _points(mesh):

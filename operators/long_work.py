@@ -215,9 +215,9 @@ def stop():
 
 def _draw_status(header, context):
     if _running is not None:
-        header.layout.label(text=_running.text())
-        header.layout.label(text="Cancel", icon="EVENT_ESC")
-        header.layout.operator(PANORAMA_OT_cancel_work.bl_idname, text="", icon="CANCEL", emboss=False)
+        row = header.layout.row()  # the button first: what follows changes its width
+        row.operator(PANORAMA_OT_cancel_work.bl_idname, text="Cancel", icon="EVENT_ESC")
+        row.label(text=_running.text())
 
 
 def unregister():

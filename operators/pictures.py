@@ -16,8 +16,8 @@ class _ThroughCamera(Reporting):
 
     @classmethod
     def poll(cls, context):
-        """There must be maps and a camera."""
-        return possible(cls, progress.camera_missing(context.scene))
+        """There must be maps and a camera, and no render of what would be set up anew."""
+        return possible(cls, render_job.running() or progress.camera_missing(context.scene))
 
 
 class PANORAMA_OT_set_up_picture(_ThroughCamera, bpy.types.Operator):

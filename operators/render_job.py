@@ -8,6 +8,11 @@ _began_by = ""
 _is_cancelled = False
 
 
+def running() -> str:
+    """Why no other render can begin, "" where none runs."""
+    return "Blender is rendering: wait, or cancel it with Esc" if bpy.app.is_job_running("RENDER") else ""
+
+
 def start(operator: str):
     """Render in Blender's render window, for the operator of this idname, which pushes the next undo step."""
     global _began_by, _is_cancelled
@@ -32,7 +37,7 @@ def _cancelled(*_):
 
 
 def _watch():
-    if bpy.app.is_job_running("RENDER"):
+    if running():
         return POLL_EVERY
     unregister()
     manager = bpy.context.window_manager
