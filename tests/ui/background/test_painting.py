@@ -114,6 +114,22 @@ def test_push_constants_fit_every_graphics_card(fresh_blend):
     assert fourth == {"eye": 0, "eye_x": 0.01, "eye_y": 0.02, "ray": 4, "ray_x": 0.5, "ray_y": 0, "up": 1.5}
 
 
+@pytest.mark.parametrize(("tilt_deg", "expected"), [(0, False), (45, False), (89.9, False), (90, True)])
+def test_an_orthographic_view_along_the_floor_is_left_alone(fresh_blend, tilt_deg, expected):
+    from mathutils import Matrix
+
+    from expanded_panoramas.ibl_toolkit.views import View
+    from expanded_panoramas.ui.background import painting
+
+    view_matrix = Matrix.Rotation(np.radians(-tilt_deg), 4, "X")
+    along = View.from_matrices(np.diag([0.1, 0.1, -0.01, 1]), view_matrix, np.eye(3), 1.5, (200, 100))
+    assert painting.runs_along_floor(along) == expected
+    perspective = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, -0.02], [0, 0, -1, 0]])
+    assert not painting.runs_along_floor(
+        View.from_matrices(perspective, view_matrix, np.eye(3), 1.5, (200, 100))
+    )
+
+
 def test_nothing_stays_behind(fresh_blend):
     import expanded_panoramas
     from expanded_panoramas.ui import background
