@@ -15,7 +15,9 @@ from .picks_copy import Live, solve_live
 from .picks_editing import PicksEditing
 
 GRAB_PIXELS = 12
-"""How near to a point a click takes hold of it [px of the screen at a UI scale of 1]."""
+"""How near to a point a press takes hold of it [px of the screen at a UI scale of 1] …"""
+SHARE_PIXELS = 5
+"""… while there are points to be set: beyond, the next one is set. A click without a drag shares it."""
 STILL_PIXELS = 2
 """A press that moves less than this only selects [px of the screen]."""
 SNAP_PIXELS = 6
@@ -122,35 +124,29 @@ class PickTool(tools.Tool):
     def _press(self, on, xy, event):
         self.problem = ""
         self._stop_typing()
-        index, offset = self._near(on, xy), np.zeros(2)
+        place, reason = self._next()
+        index, offset = self._near(on, xy, GRAB_PIXELS if place is None else SHARE_PIXELS), np.zeros(2)
         if index is not None:
             self.push()
             self.editing.select(index)
             offset = on.pixels_of(np.array(self.editing.point(index).uv)) - xy
         else:
             snap = self.snapped(on, xy, event.ctrl)
-            if snap is None:
+            if place is None or snap is None:
+                self.problem = reason
                 return
-            try:
-                index = self.editing.next_missing()
-            except ValueError as error:
-                self.problem = str(error)
-                return
+            index = place
             self.push()
             self.editing.set_point(index, snap.uv)
         self.dragged, self._pressed_at, self._held_from = index, np.array(xy), offset
 
     def _drag(self, on, xy, event):
         if event.type in ("ESC", "RIGHTMOUSE") and event.value in PRESSES:
-            held = self.dragged
-            self.undo()
-            self._future.clear()
-            if self.editing.has(held):
-                self.editing.select(held)
+            self._put_back(self.dragged)
         elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
-            self.dragged = None
+            held, self.dragged = self.dragged, None
             if self._past and self._past[-1].copied == self.editing.copied:
-                self._past.pop()  # it was only selected
+                self._put_back(held, shared=True)
         elif event.type in tools.MOUSE and on is not None:
             moved = self._pressed_at is None or np.linalg.norm(xy - self._pressed_at) > STILL_PIXELS
             snap = self.snapped(on, xy + self._held_from, event.ctrl) if moved else None
@@ -159,11 +155,29 @@ class PickTool(tools.Tool):
                 self.editing.point(self.dragged).set(snap.uv)
         return tools.RUNNING
 
-    def _near(self, on, xy):
-        """The point under the mouse, or None."""
+    def _put_back(self, held, *, shared=False):
+        """Undo a press on a point and select it; or, if it may be shared, set the next point there, too."""
+        self.undo()
+        self._future.clear()
+        place, _ = self._next()
+        if shared and place is not None and held[0] != self.editing.target:
+            self.push()
+            self.editing.set_point(place, self.editing.point(held).uv)
+        elif self.editing.has(held):
+            self.editing.select(held)
+
+    def _next(self):
+        """Where the next click goes (pick, point), or None and why nowhere."""
+        try:
+            return self.editing.next_missing(), ""
+        except ValueError as error:
+            return None, str(error)
+
+    def _near(self, on, xy, reach):
+        """The point under the mouse, or None; reach [px of the screen at a UI scale of 1]."""
         indices, uv = self.editing.places()
         apart = np.linalg.norm(on.pixels_of(uv) - xy, axis=-1)
-        reached = np.flatnonzero(apart <= GRAB_PIXELS * self.ui_scale)  # NaN is not
+        reached = np.flatnonzero(apart <= reach * self.ui_scale)  # NaN is not
         return indices[reached[apart[reached].argmin()]] if len(reached) else None
 
     def _delete(self):

@@ -13,21 +13,21 @@ from .picks_copy import PickCopy, PicksCopy, PointCopy
 
 @dataclass
 class PicksEditing:
-    """The copy, the pick that is being filled (`target`, −1 for none) and its selected point, or None.
+    """The copy, the pick that is being filled (`target`, −1 for none) and the selected (pick, point).
 
     adds: the kind of lines that was begun anew: after one is complete, the next is begun.
     """
 
     copied: PicksCopy
     target: int = -1
-    selected: int | None = None
+    selected: tuple[int, int] | None = None
     adds: str = ""
 
     @property
     def active(self) -> tuple[int, int] | None:
         """(pick, point) of the selected point; None where none is, or it is missing."""
-        index = self.target, self.selected
-        return index if self.selected is not None and self.point(index).picked else None
+        is_there = self.selected is not None and self.has(self.selected) and self.point(self.selected).picked
+        return self.selected if is_there else None
 
     def point(self, index) -> PointCopy:
         """The point of (pick, point)."""
@@ -39,8 +39,12 @@ class PicksEditing:
         return pick < len(self.copied.picks) and point < len(self.copied.picks[pick].points)
 
     def select(self, index):
-        """Select (pick, point), and fill its pick."""
-        self.target, self.selected = index
+        """Select (pick, point); its pick is filled next unless another still is."""
+        try:
+            self.next_missing()
+        except ValueError:
+            self.target = index[0]
+        self.selected = index
 
     def begin(self, kind, plane, axis):
         """Fill a new pick."""
@@ -82,12 +86,14 @@ class PicksEditing:
         if point == len(points):
             points.extend((PointCopy(), PointCopy()))
         points[point].set(uv)
-        self.select(index)
+        self.target, self.selected = number, index
 
     def delete(self):
         """Make the selected point missing again; a new pick goes with its last point, a line as well."""
-        self.point(self.active).clear()
-        pick, self.selected = self.copied.picks[self.target], None
+        self.target, point = self.active
+        self.point((self.target, point)).clear()
+        self.selected = None
+        pick = self.copied.picks[self.target]
         if pick.kind == "PARALLELS":
             pairs = [pick.points[k : k + 2] for k in range(0, len(pick.points), 2)]
             kept = [pair for pair in pairs if any(point.picked for point in pair)] or pairs[:1]

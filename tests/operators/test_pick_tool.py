@@ -126,6 +126,24 @@ def test_a_click_on_a_point_only_selects_it():
     assert len(tool._past) == steps
 
 
+def test_a_line_may_begin_at_another_picks_corner():
+    """What serves twice is one click with one error; a drag moves it instead."""
+    rug = with_rug().editing
+    tool = new_tool("VERTICAL", picks=rug.copied.picks)
+    click(tool, np.add(RUG[0], (0.003, 0.0)))
+    assert points(tool) == [pytest.approx(RUG[0]), None]
+    assert points(tool, 0) == [pytest.approx(uv) for uv in RUG]
+    click(tool, np.add(RUG[0], (0.008, 0.0)))  # 8 px beside: a point of its own
+    assert points(tool)[1] == pytest.approx(np.add(RUG[0], (0.008, 0.0)))
+    tool.undo()
+    drag(tool, RUG[1], (0.4, 0.75))
+    assert points(tool, 0)[1] == pytest.approx((0.4, 0.75))
+    assert points(tool) == [pytest.approx(RUG[0]), None]
+    assert tool.editing.active == (0, 1)
+    click(tool, (0.2, 0.3))  # the vertical is still the one that is filled
+    assert points(tool)[1] == pytest.approx((0.2, 0.3))
+
+
 def test_arrows_move_by_a_pixel_of_the_image():
     tool = with_rug()
     key(tool, "RIGHT_ARROW")
