@@ -5,7 +5,6 @@ from __future__ import annotations
 import bpy
 from mathutils import Matrix
 
-from . import roles
 from .picture_coordinates import has_stored_positions
 from .place import Place
 
@@ -58,5 +57,5 @@ def _update_piece(place, thing, piece):
     thing.matrix_world = Matrix(piece.mesh.world_from_local.tolist())
     thing.panorama_role = piece.role
     thing.panorama_reflectivity, thing.panorama_roughness = piece.reflectivity, piece.roughness
-    thing.display_type = "WIRE" if piece.role == roles.ENVIRONMENT else "TEXTURED"
+    thing.display_type = "WIRE"  # the photograph behind it shows how it looks; Cycles renders it all the same
     return thing
