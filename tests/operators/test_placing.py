@@ -97,8 +97,10 @@ def test_a_turned_object_comes_to_lie_on_the_spot(fresh_blend, tmp_path):
 def test_several_objects_keep_their_arrangement(fresh_blend, tmp_path):
     bpy = fresh_blend
     calibrated(bpy, tmp_path)
+    above = add_cube(bpy, "above")  # first, as it stands in the scene before what it hangs on
     below = add_cube(bpy, "below", Matrix.Translation((0, 0, 4)))
-    above = add_cube(bpy, "above", Matrix.Translation((0.5, 0, 6)), parent=below)
+    above.parent, above.matrix_world = below, Matrix.Translation((0.5, 0, 6))
+    bpy.context.view_layer.update()
     aside = add_cube(bpy, "aside", Matrix.Translation((3, 0, 4)))
     select(bpy, "below", "above", "aside")
     bpy.ops.panorama.send_to_place(location=(10, 0, 0))
