@@ -7,7 +7,9 @@ also writes the manual's pictures. Blender's own file is never touched: it gets 
 
 import os
 import pathlib
+import re
 
+import build_zips
 import pytest
 
 from .window import Display, NoWindowError, crop, install, play
@@ -49,6 +51,12 @@ class Played(dict):
         return found
 
 
+def manual_pictures():
+    """Names of the pictures that the manual shows."""
+    pages = [page.read_text("utf-8") for page in (build_zips.ROOT / "docs" / "manual").glob("*.md")]
+    return set(re.findall(r"images/manual/(\w+)\.jpg", "".join(pages)))
+
+
 @pytest.fixture(scope="module")
 def notes(request, display, user, tmp_path_factory):
     """What the jobs of the module's JOBS noted."""
@@ -59,8 +67,8 @@ def notes(request, display, user, tmp_path_factory):
         pytest.skip(str(reason))
     pictures = request.config.getoption("--pictures", default=None)
     if pictures:
-        for name, box in played["pictures"].items():
-            crop(folder / f"{name}.png", pictures / f"{name}.jpg", box)
+        for name in manual_pictures() & played["pictures"].keys():
+            crop(folder / f"{name}.png", pictures / f"{name}.jpg", played["pictures"][name])
     if not any("error" in job for job in played["jobs"].values()):
         assert "Traceback" not in played["printed"], played["printed"]  # of a panel or a draw callback
     return Played(played["jobs"])

@@ -18,7 +18,7 @@ INSIDE = pathlib.Path(__file__).parent / "inside"
 WIDTH, HEIGHT = 1280, 960
 """Of the window [px]: high enough for most of the sidebar."""
 QUALITY = 85
-SECONDS = 300
+SECONDS = 1200
 """After which a Blender is given up."""
 
 

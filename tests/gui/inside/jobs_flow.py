@@ -42,6 +42,8 @@ def state():
         "sizes": {shape.name: [round(s, 4) for s in shape.size] for shape in found.shapes if shape.is_built},
         "objects": sorted(thing.name for thing in scene.objects),
         "is_prepared": place.irradiance is not None,
+        "has_camera": scene.camera is not None,
+        "layers": len(scene.view_layers),
     }
 
 
@@ -64,24 +66,20 @@ def drop_panorama(stage):
     right.spaces.active.show_region_toolbar = False
     parameters = right.spaces.active.params
     parameters.directory, parameters.display_type = str(path.parent).encode(), "LIST_VERTICAL"
-    yield from wait(10)
-    x, y = yield from icon_of(stage, right, path.name)
-    yield from stage.hand.drag((x, y), look.middle(look.region(view())))
+    yield from wait(20)
+    icon = yield from reach_icon(stage, right)
+    yield from stage.hand.drag(icon, look.middle(look.region(view())))
     yield
-    yield from stage.picture("dropped", look.box(view()))
+    yield from stage.picture("five_drop", look.box(view()))
     yield from stage.hand.key("O")  # Open as HDR Panorama
     yield Until(lambda: bpy.context.scene.panorama_set.image_path, "the panorama")
 
 
-def icon_of(stage, browser, name):
-    """Click the first file of a File Browser's list -> window pixel of its icon, by which it is dragged."""
+def reach_icon(stage, browser):
+    """Come from beside to the icon of a File Browser's first file, by which it is dragged -> window pixel."""
     window = look.region(browser)
     x, y = window.x + 17, window.y + window.height - BELOW_NAMES
     yield from stage.hand.move(x + 5, y - 200)
-    yield from stage.hand.click(x, y)
-    with look.override(browser):
-        assert bpy.context.active_file.name == name
-    yield from stage.hand.move(x + 5, y - 200)  # it is dragged only if the mouse comes from beside
     yield from stage.hand.move(x, y, steps=10)
     return x, y
 
@@ -119,11 +117,11 @@ def pick(stage):
     yield from stage.hand.key("S")  # no snapping: the points are given to a hundredth of a pixel
     for uv in FLOOR_RECTANGLE[:3]:
         yield from click_at(stage, uv)
-    yield from stage.picture("picking", look.box(view()))
+    yield from stage.picture("five_picking", look.box(view()))
     yield from click_at(stage, FLOOR_RECTANGLE[3])
     yield from stage.hand.type_text("1.32")
     yield
-    yield from stage.picture("picked", look.box(view()))
+    yield from stage.picture("five_picked", look.box(view()))
     yield from stage.hand.key("RET")
     yield Until(lambda: bpy.context.scene.panorama_set.result.is_solved, "a calibration")
 
@@ -133,12 +131,12 @@ def draw_room(stage):
     yield from press(stage, "draw_shape", "room")
     for uv in ROOM:
         yield from click_at(stage, uv)
-    yield from stage.picture("floor_drawn", look.box(view()))
+    yield from stage.picture("five_floor", look.box(view()))
     yield from stage.hand.key("RET")
     place = yield from look.bring_into_view(stage.hand, view(), look.direction_of(CEILING))
     yield from stage.hand.move(*place)
     yield
-    yield from stage.picture("walls_raised", look.box(view()))
+    yield from stage.picture("five_walls", look.box(view()))
     yield from click_at(stage, CEILING)
     yield Until(lambda: len(state()["sizes"]) == 2, "floor and walls")
 
@@ -148,6 +146,7 @@ def add_ball(stage):
     yield from click_at(stage, BALL, button="RIGHTMOUSE", shift=True)
     yield
     yield from press(stage, "add_ball", "MATTE")
+    yield from stage.picture("five_ball", look.box(view()))
 
 
 def is_idle():
@@ -158,30 +157,40 @@ def is_idle():
 def prepare(stage):
     """Prepare the light, looking at the progress."""
     yield from press(stage, "panorama.prepare")
-    yield from wait(5)
-    yield from stage.picture("preparing")
-    yield Until(is_idle, "the light", 200)
+    yield from wait(30)
+    yield from stage.picture("five_preparing", (0, 0, look.area("VIEW_3D").width, 330))
+    yield Until(is_idle, "the light", 400)
     yield
 
 
-def render(stage):
-    """Add a camera that looks at the ball, and render."""
-    scene = bpy.context.scene
-    scene.render.resolution_x, scene.render.resolution_y = 720, 480
-    scene.panorama_set.job.samples = 16
+def add_camera(stage):
+    """Add a camera that looks at the ball."""
     yield from press(stage, "panorama.add_camera")
+
+
+def render(stage):
+    """Render a small picture, and come back from where Blender shows it."""
+    scene = bpy.context.scene
+    scene.panorama_set.job.samples, scene.panorama_set.job.denoise = 16, True
     yield from press(stage, "panorama.render_frame")
     yield from wait(5)
-    yield Until(lambda: is_idle() and not bpy.app.is_job_running("RENDER"), "the picture", 200)
-    yield from wait(3)
-    yield from stage.picture("rendered")
+    yield Until(lambda: is_idle() and not bpy.app.is_job_running("RENDER"), "the picture", 400)
+    yield from wait(5)
+    shown = look.region(look.area("IMAGE_EDITOR"))
+    x, y = look.middle(shown)
+    yield from stage.picture("five_rendered", (x - 256, y - 176, 512, 352))
+    yield from stage.hand.move(x, y)
+    yield from stage.hand.key("ESC")
+    yield from wait(5)
 
 
-STEPS = (drop_panorama, pick, draw_room, add_ball, prepare)
+STEPS = (drop_panorama, pick, draw_room, add_ball, prepare, add_camera, render)
 
 
 def five_minutes(stage):
     """All of it, then back to the start and forth again."""
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 480, 320
     yield from stage.hand.move(*look.middle(look.region(view())))
     yield from stage.hand.key("A")
     yield from stage.hand.key("DEL")
@@ -190,21 +199,23 @@ def five_minutes(stage):
         yield from step(stage)
         stages.append(state())
         stage.note(stages=stages)
-        yield from stage.picture(f"after_{step.__name__}", look.box(view()))
         if step is drop_panorama:
             look.area("FILE_BROWSER").type = "PROPERTIES"
             yield from look_around(stage)
             yield from look.open_sidebar(stage.hand, view())
-    back, again = [], []
+            yield from stage.picture("five_look", look.box(view()))
     yield from stage.hand.move(*look.middle(look.region(view())))
-    for _ in STEPS:
-        yield from stage.hand.key("Z", ctrl=True)
-        back.append(state())
-    for _ in STEPS:
-        yield from stage.hand.key("Z", ctrl=True, shift=True)
-        again.append(state())
-    stage.note(back=back, again=again)
-    yield from render(stage)
+    stage.note(back=(yield from repeat(stage, len(STEPS))))
+    stage.note(again=(yield from repeat(stage, len(STEPS), shift=True)))
+
+
+def repeat(stage, times, **how):
+    """Press Ctrl Z so many times -> the states after each."""
+    states = []
+    for _ in range(times):
+        yield from stage.hand.key("Z", ctrl=True, **how)
+        states.append(state())
+    return states
 
 
 def sample(stage):

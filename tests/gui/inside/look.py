@@ -5,8 +5,8 @@ import numpy as np
 from mathutils import Vector
 from waiting import AT_ONCE, Until
 
-ROW = 15
-"""Distance of the rows in which buttons are looked for [px at a UI scale of 1]; a button is 20 high."""
+ROW = 12
+"""Distance of the rows in which buttons are looked for [px at a UI scale of 1]; a button takes 15."""
 _seen = {}
 """What was copied where, last."""
 
@@ -88,10 +88,11 @@ def text_at(hand, x, y):
 
 def click_button(hand, of, *words):
     """Click the button with these words in a region, scrolling it where it must. Raises LookupError."""
-    for clicks in (0, 8, 8, -30):
+    for kind, clicks in (("", 0), ("WHEELDOWNMOUSE", 10), ("WHEELDOWNMOUSE", 10), ("WHEELUPMOUSE", 40)):
         if clicks:
             yield from hand.move(*middle(of))
-            yield from hand.wheel("WHEELDOWNMOUSE" if clicks > 0 else "WHEELUPMOUSE", abs(clicks))
+            yield from hand.wheel(kind, clicks)
+            yield
         found = yield from find_button(hand, box(of), *words)
         if found:
             yield from hand.click(*found)
