@@ -11,6 +11,12 @@ class Reporting:
 
     bl_options = {"REGISTER", "UNDO"}
 
+    def __init_subclass__(cls, **keywords):
+        """The docstring is the tooltip, which Blender would show with the line breaks of the source."""
+        super().__init_subclass__(**keywords)
+        if "bl_idname" in vars(cls) and cls.__doc__:
+            cls.bl_description = " ".join(cls.__doc__.split())
+
     def execute(self, context):
         """Work, and report."""
         try:

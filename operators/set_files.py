@@ -44,7 +44,7 @@ class PANORAMA_OT_load_image(_Opening, bpy.types.Operator):
 
 
 class PANORAMA_OT_load_rgbd(_Opening, bpy.types.Operator):
-    """Open a panorama with depth (.exr, as "Render Depth" writes it): calibrated, its depth as a surface"""
+    """Open a panorama with depth (.exr, as "Write RGB-D" makes it): calibrated, its depth as a surface"""
 
     bl_idname = "panorama.load_rgbd"
     bl_label = "Open RGB-D Panorama"

@@ -57,6 +57,8 @@ def test_operators(fresh_blend):
         rna = getattr(fresh_blend.ops.panorama, name).get_rna_type()
         if len(rna.description) < 20:
             found.append(f"{name}: described as {rna.description!r}")
+        if "\n" in rna.description:
+            found.append(f"{name}: its tooltip breaks lines where the source does")
         found += complaints(rna, of_blender(fresh_blend), [])
     assert not found, "\n".join(found)
 
