@@ -90,7 +90,7 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
         state.active_pick = max(min(tool.editing.target, len(state.picks) - 1), 0)
         missing = progress.picks_missing(scene)
         if missing:
-            return f"Stored {len(state.picks)} picks. To calibrate: {missing}"
+            return f"{_stored(state)}. To calibrate: {missing}"
         return self._calibrate(scene)
 
     def _calibrate(self, scene):
@@ -99,10 +99,15 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
         except (ValueError, OSError) as error:  # the picks are kept, to be mended
             scene.panorama_set.problem, scene.panorama_set.calibration_is_old = str(error), True
             self.report({"WARNING"}, str(error))
-            return f"Stored {len(scene.panorama_set.picks)} picks, which do not calibrate yet"
+            return f"{_stored(scene.panorama_set)}; they do not calibrate yet"
         for warning in found.warnings:
             self.report({"WARNING"}, warning)
         return f"Tilt {found.tilt_deg:.2f}° ± {found.uncertainty_tilt_deg:.2f}°"
+
+
+def _stored(state):
+    count = len(state.picks)
+    return f"Stored {count} pick" + "s" * (count != 1)
 
 
 def _give_pixels(tool, pixels):
