@@ -105,6 +105,11 @@ def split_into_discs(image: np.ndarray, most: int = MOST) -> DiscSplit:
     return DiscSplit(tuple(discs), residual, quiet, share, noise(quiet, image))
 
 
+def disc_of_region(image: np.ndarray, pixels: np.ndarray) -> Disc:
+    """Return the disc with the light of some pixels (n,), flat indices, of a light map (H, W, 3)."""
+    return _disc(_Sphere(check_light_map(image)), pixels)
+
+
 class _Sphere:
     """A map's pixels (n,) on the sphere: radiance, directions, solid angles, luminous power."""
 

@@ -5,15 +5,22 @@ from __future__ import annotations
 import numpy as np
 
 from .. import equirectangular
-from .discs import BRIGHT, LEAST_SHARE, Disc, split_into_discs
+from .discs import BRIGHT, LEAST_SHARE, Disc, disc_of_region, split_into_discs
+from .light_map import luminance
+from .regions import connected_regions
 
 NEAR_PIXELS = 1.5
 """A point this near to a lamp [px of the map] is taken for one on it."""
+CORE = 0.1
+"""Pixels above this share of a lamp's highest luminance are its core: the sun without the glow around it."""
+LEAST_CORE = 0.4
+"""A core with less of its region's light is a hot pixel, or a gap between leaves: the region is the lamp."""
 
 
 def strongest_lamp(image: np.ndarray) -> Disc:
     """Return the lamp of a light map (H, W, 3) that gives the most light: a region, not the brightest pixel.
 
+    A sun comes without its glow, which would make its shadows soft: as the core of its region.
     Raises ValueError where no region stands out, and for what `check_light_map` refuses.
 
     >>> image = np.full((64, 128, 3), 0.01, np.float32)
@@ -22,11 +29,11 @@ def strongest_lamp(image: np.ndarray) -> Disc:
     >>> strongest_lamp(image).pixels.size
     32
     """
-    return _lamps(image)[0]
+    return _core(image, _lamps(image)[0])
 
 
 def lamp_at(image: np.ndarray, uv: np.ndarray) -> Disc:
-    """Return the lamp of a light map (H, W, 3) at an image point (2,).
+    """Return the lamp of a light map (H, W, 3) at an image point (2,), as `strongest_lamp` does.
 
     Raises ValueError, naming the point and the nearest lamp, where there is none; for a map without lamps as
     `strongest_lamp` does.
@@ -38,7 +45,7 @@ def lamp_at(image: np.ndarray, uv: np.ndarray) -> Disc:
     cosines = [float((directions[lamp.pixels] @ at).max()) for lamp in lamps]
     nearest = int(np.argmax(cosines))
     if np.arccos(min(cosines[nearest], 1)) <= NEAR_PIXELS * np.pi / height:
-        return lamps[nearest]
+        return _core(image, lamps[nearest])
     u, v = equirectangular.uv_from_direction(lamps[nearest].direction)
     raise ValueError(
         f"no lamp at u {uv[0]:.3f}, v {uv[1]:.3f}: the nearest is at u {u:.3f}, v {v:.3f}; a lamp is "
@@ -55,3 +62,13 @@ def _lamps(image):
             f"{LEAST_SHARE:.1%} of the light"
         )
     return lamps
+
+
+def _core(image, lamp):
+    """The disc of a lamp's core where that holds much of its light, else the lamp."""
+    brightness = luminance(image).ravel()[lamp.pixels]
+    mask = np.zeros(image.shape[:2], bool)
+    mask.ravel()[lamp.pixels[brightness >= CORE * brightness.max()]] = True
+    cores = [disc_of_region(image, pixels) for pixels in connected_regions(mask)]
+    core = max(cores, key=lambda disc: disc.irradiance.sum())
+    return core if core.irradiance.sum() >= LEAST_CORE * lamp.irradiance.sum() else lamp

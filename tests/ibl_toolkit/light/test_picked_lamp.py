@@ -40,6 +40,24 @@ def test_the_lamp_under_a_click(image, lamp_uv):
     assert colour.min() == 50
 
 
+def test_a_sun_comes_without_its_glow(image):
+    glow_uv, sun_uv = (0.74, 0.26), (0.75, 0.25)
+    disc(image, glow_uv, 12, 2)
+    sun = disc(image, sun_uv, 1.5, 400)
+    for found in (strongest_lamp(image), lamp_at(image, np.array([0.72, 0.25]))):
+        assert found.direction @ sun > np.cos(np.radians(0.2))
+        assert found.radius == pytest.approx(np.radians(1.5), rel=0.15)
+        assert image.reshape(-1, 3)[found.pixels].min() == 400
+
+
+def test_a_hot_pixel_in_a_lamp_is_not_its_core(image):
+    lamp = disc(image, (0.75, 0.25), 6, 20)
+    image[30, 192] = 500
+    found = strongest_lamp(image)
+    assert found.direction @ lamp > np.cos(np.radians(1))
+    assert found.radius == pytest.approx(np.radians(6), rel=0.1)
+
+
 def test_beside_a_lamp_is_none(image):
     disc(image, (0.75, 0.25), 4, 50)
     with pytest.raises(ValueError, match=r"no lamp at u 0.700, v 0.250: the nearest is at u 0.750, v 0.250"):
