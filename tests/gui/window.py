@@ -86,6 +86,8 @@ def play(blender, user, display, jobs, folder):
         raise NoWindowError("this BLENDER runs in the background and opens no window")
     if not on_time or "complete" not in list(notes["jobs"].values())[-1]:
         raise RuntimeError(f"{jobs}: Blender ended early or late after {list(notes['jobs'])}: {text[-3000:]}")
+    if process.returncode:
+        raise RuntimeError(f"{jobs}: Blender ended with {process.returncode}: {text[-3000:]}")
     return {**notes, "printed": text}
 
 

@@ -34,8 +34,18 @@ def themes(stage):
         for name in THEMES:
             set_theme(name)
             yield from stage.picture(f"theme_{name}", look.box(look.area("VIEW_3D")))
+        yield from both_halves(stage, look.region(view, "UI"))
     finally:
         bpy.ops.preferences.reset_default_theme()
+
+
+def both_halves(stage, sidebar):
+    """Pictures of the sidebar above and below."""
+    yield from stage.picture("sidebar_above", look.box(sidebar))
+    yield from stage.hand.move(*look.middle(sidebar))
+    yield from stage.hand.wheel("WHEELDOWNMOUSE", 40)
+    yield from stage.picture("sidebar_below", look.box(sidebar))
+    yield from stage.hand.wheel("WHEELUPMOUSE", 40)
 
 
 def scales(stage):

@@ -17,6 +17,7 @@ class Watch:
         self._undone = []
         self._replace(bpy.app.timers, "register", self._keep_timer)
         self._replace(gpu.types, "GPUTexture", self._keep_texture)
+        self._replace(gpu.texture, "from_image", self._keep_texture)
         for space in SPACES:
             self._replace(space, "draw_handler_add", self._keep_callback)
             self._replace(space, "draw_handler_remove", self._drop_callback)
@@ -45,9 +46,11 @@ class Watch:
         self.timers.append(function)
         return register(function, **how)
 
-    def _keep_texture(self, make, *size, **how):
-        self.textures.append(make(*size, **how))
-        return self.textures[-1]
+    def _keep_texture(self, make, *what, **how):
+        texture = make(*what, **how)
+        if not any(texture is kept for kept in self.textures):  # Blender gives an image's texture again
+            self.textures.append(texture)
+        return texture
 
     def _keep_callback(self, add, *values):
         self.callbacks.append(add(*values))
