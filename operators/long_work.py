@@ -27,7 +27,7 @@ class Running:
     def __init__(self, label: str, scene: bpy.types.Scene, child: ChildProcess, depends_on: str):
         self.label, self.child, self.depends_on = label, child, depends_on
         self.scene_uid = scene.session_uid  # a scene may be renamed meanwhile
-        self.timer, self.shown = None, ""
+        self.timer, self.shown_second = None, -1
 
     def text(self) -> str:
         """What it is doing, for the status bar."""
@@ -110,7 +110,7 @@ class LongWork(Reporting):
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         _running.child.read_progress()
-        if _running.text() != _running.shown:
+        if int(_running.child.seconds) != _running.shown_second:  # a window is costly to draw
             show(context)
         return self._finish(context) if _running.child.is_done() else {"PASS_THROUGH"}
 
@@ -194,7 +194,7 @@ class PANORAMA_OT_cancel_work(bpy.types.Operator):
 def show(context):
     """Show in the status bar what runs, unless a tool shows its keys there."""
     if tools.active_tool() is None:
-        _running.shown = _running.text()
+        _running.shown_second = int(_running.child.seconds)
         context.workspace.status_text_set(_draw_status)
 
 
