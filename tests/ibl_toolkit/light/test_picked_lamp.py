@@ -1,12 +1,18 @@
 """One lamp of a map: the region with the most light, and the one under a click."""
 
+import importlib.util
+import pathlib
+
 import numpy as np
 import pytest
 
 from expanded_panoramas.ibl_toolkit import equirectangular
+from expanded_panoramas.ibl_toolkit.images import read_panorama
 from expanded_panoramas.ibl_toolkit.light.picked_lamp import lamp_at, strongest_lamp
 
 WIDTH, HEIGHT = 256, 128
+SPEC = importlib.util.find_spec("bpy")
+SHIPPED = list(pathlib.Path(SPEC.origin).parent.glob("*/datafiles/studiolights/world")) if SPEC else []
 
 
 def disc(image, uv, radius_deg, radiance):
@@ -68,3 +74,15 @@ def test_nothing_stands_out_of_an_even_map(image):
     for find in (strongest_lamp, lambda even: lamp_at(even, np.array([0.5, 0.5]))):
         with pytest.raises(ValueError, match="no lamp stands out"):
             find(image)
+
+
+@pytest.mark.parametrize(
+    ("name", "across_deg"),
+    [("city", 0.77), ("sunrise", 0.81), ("interior", 0.70), ("sunset", 33.0), ("forest", 25.0)],
+)
+def test_suns_of_blenders_own_panoramas(name, across_deg):
+    """As docs/methods/light.md says."""
+    if not SHIPPED:
+        pytest.skip("no bpy, which brings the panoramas")
+    found = strongest_lamp(np.maximum(read_panorama(SHIPPED[0] / f"{name}.exr"), 0))
+    assert np.degrees(2 * found.radius) == pytest.approx(across_deg, rel=0.02)
