@@ -104,9 +104,9 @@ def look_around(stage):
     yield
 
 
-def press(stage, *words):
+def press(stage, *words, **where):
     """Click a button of the sidebar."""
-    yield from look.click_button(stage.hand, look.region(view(), "UI"), *words)
+    yield from look.click_button(stage.hand, look.region(view(), "UI"), *words, **where)
     yield
 
 
@@ -145,7 +145,7 @@ def add_ball(stage):
     """Set the 3D cursor on the floor and stand a ball there."""
     yield from click_at(stage, BALL, button="RIGHTMOUSE", shift=True)
     yield
-    yield from press(stage, "add_ball", "MATTE")
+    yield from press(stage, "add_ball", "MATTE", columns=(0.75,))
     yield from stage.picture("five_ball", look.box(view()))
 
 

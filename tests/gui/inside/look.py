@@ -7,6 +7,8 @@ from waiting import AT_ONCE, Until
 
 ROW = 12
 """Distance of the rows in which buttons are looked for [px at a UI scale of 1]; a button takes 15."""
+PAGE = 10
+"""Clicks of the wheel that scroll a sidebar by most of its height."""
 _seen = {}
 """What was copied where, last."""
 
@@ -86,18 +88,23 @@ def text_at(hand, x, y):
     return manager.clipboard
 
 
-def click_button(hand, of, *words):
+def click_button(hand, of, *words, columns=(0.3, 0.75)):
     """Click the button with these words in a region, scrolling it where it must. Raises LookupError."""
-    for kind, clicks in (("", 0), ("WHEELDOWNMOUSE", 10), ("WHEELDOWNMOUSE", 10), ("WHEELUPMOUSE", 40)):
-        if clicks:
-            yield from hand.move(*middle(of))
-            yield from hand.wheel(kind, clicks)
-            yield
-        found = yield from find_button(hand, box(of), *words)
-        if found:
-            yield from hand.click(*found)
-            return
+    for share in columns:
+        for clicks in (0, *(() if _is_at_top(of) else (-40,)), PAGE, PAGE):
+            if clicks:
+                yield from hand.move(*middle(of))
+                yield from hand.wheel("WHEELDOWNMOUSE" if clicks > 0 else "WHEELUPMOUSE", abs(clicks))
+                yield
+            found = yield from find_button(hand, box(of), *words, columns=(share,))
+            if found:
+                yield from hand.click(*found)
+                return
     raise LookupError(f"no button {words} in the region {of.type}")
+
+
+def _is_at_top(of):
+    return of.view2d.region_to_view(0, of.height)[1] > -1
 
 
 def open_sidebar(hand, of, category="Panorama"):
