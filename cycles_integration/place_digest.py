@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 
 import bpy
 import numpy as np
@@ -37,7 +38,7 @@ def digest_of_place(scene: bpy.types.Scene) -> str:
 def digest_of_image(scene: bpy.types.Scene) -> str:
     """The same text for as long as the place has the same panorama."""
     image = place_of(scene).image
-    path = bpy.path.abspath(image.filepath, library=image.library)
+    path = os.path.normpath(bpy.path.abspath(image.filepath, library=image.library))
     return repr((image.name_full, path))  # its size would have it loaded
 
 

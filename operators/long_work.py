@@ -88,11 +88,12 @@ class LongWork(Reporting):
         scene = context.scene
         try:
             refuse_linked(scene)
+            depends_on = self.depends_on(scene)
             child = start_child(self.long_part, scene, self.inputs(context))
         except (ValueError, OSError, RuntimeError) as error:
             self.report({"ERROR"}, " ".join(str(error).split()))
             return {"CANCELLED"}
-        _running = self.running = Running(self.bl_label, scene, child, self.depends_on(scene))
+        _running = self.running = Running(self.bl_label, scene, child, depends_on)
         manager = context.window_manager
         _running.timer = manager.event_timer_add(POLL_EVERY, window=context.window)
         manager.modal_handler_add(self)
@@ -102,7 +103,7 @@ class LongWork(Reporting):
     def modal(self, context, event):
         """Look after the child; everything but Esc is for others."""
         if self.running is not _running:
-            return {"CANCELLED"}
+            return {"CANCELLED", "PASS_THROUGH"}  # ended from elsewhere: this event is not for it
         if event.type == "ESC" and event.value == "PRESS" and tools.active_tool() is None:
             self.cancel(context)
             self.report({"INFO"}, f"{self.bl_label}: cancelled, nothing has changed")
