@@ -10,3 +10,7 @@ def test_themes(notes):
 def test_the_sidebar_grows_with_the_interface(notes):
     small, plain, large = notes["scales"]["widths"].values()
     assert small < plain < large
+
+
+def test_number_pad_7_shows_a_plan(notes):
+    assert notes["seeing"]["is_plan"]

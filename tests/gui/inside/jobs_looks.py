@@ -67,4 +67,23 @@ def scales(stage):
     stage.note(widths=widths)
 
 
-JOBS = (themes, scales)
+def seeing(stage):
+    """Pictures of the header's pop-over, and of the plan of the floor that a view from above shows."""
+    yield from prepared(stage)
+    for name in ("Cube", "Camera", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    view = look.area("VIEW_3D")
+    yield from look.click_in_header(stage.hand, view, "PANORAMA_PT_view")
+    yield
+    left, bottom, width, height = look.box(view)
+    yield from stage.picture("see_settings", (left + width - 280, bottom + height - 190, 480, 190))
+    yield from stage.hand.key("ESC")
+    yield from stage.hand.move(*look.middle(look.region(view)))
+    yield from stage.hand.key("NUMPAD_7")
+    yield from stage.hand.key("HOME")
+    yield from stage.hand.wheel("WHEELUPMOUSE", 2)
+    yield from stage.picture("see_plan", look.box(view))
+    stage.note(is_plan=view.spaces.active.region_3d.view_perspective == "ORTHO")
+
+
+JOBS = (themes, scales, seeing)
