@@ -18,6 +18,8 @@ UNCALIBRATED = np.eye(3), 1.5
 FAR = 1e4
 """How far before its own plane an orthographic view's rays start [m]: it shows what is behind that, too."""
 EDITORS = ("VIEW_3D", "IMAGE_EDITOR")
+OUTSIDE = 50
+"""How far outside of an image its scale is measured [sizes of the image]."""
 NAVIGATION_SIZE = {"VIEW_3D": (95, 245), "IMAGE_EDITOR": (55, 85)}
 """Of the corner with the buttons that move the view [px at a UI scale of 1]."""
 
@@ -98,9 +100,15 @@ def canvas_of(context, area, region) -> ViewCanvas | ImageCanvas | None:
             View.from_matrices(*matrices, *calibration_of(context.scene), (region.width, region.height))
         )
     if area.type == "IMAGE_EDITOR" and area.spaces.active.image == state.image:
-        corners = [np.array(region.view2d.view_to_region(u, u, clip=False), float) for u in (0, 1)]
-        return ImageCanvas(corners[0], corners[1] - corners[0])
+        return _image_canvas(region.view2d)
     return None
+
+
+def _image_canvas(view2d):
+    """Blender tells whole pixels only, so they are asked for far outside of the image."""
+    low, high = (np.array(view2d.view_to_region(u, u, clip=False), float) for u in (-OUTSIDE, 1 + OUTSIDE))
+    size = (high - low) / (1 + 2 * OUTSIDE)
+    return ImageCanvas(low + OUTSIDE * size, size)
 
 
 def canvas_under(context, event):
