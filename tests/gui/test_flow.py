@@ -9,7 +9,7 @@ SHARE = 0.05
 
 @pytest.fixture(scope="module")
 def stages(notes):
-    names = ("start", "dropped", "picked", "drawn", "ball", "prepared", "camera", "rendered")
+    names = ("start", "dropped", "picked", "drawn", "ball", "sent", "prepared", "camera", "rendered")
     return dict(zip(names, notes["five_minutes"]["stages"], strict=True))
 
 
@@ -37,7 +37,8 @@ def test_the_room_has_its_size(notes, stages):
 
 
 def test_ball_light_and_camera_come(stages):
-    assert "Matte Ball" in stages["ball"]["objects"]
+    assert stages["ball"]["ball"] == pytest.approx([0, 0, 0.15], abs=1e-3)
+    assert stages["sent"]["ball"] == pytest.approx([0.71, -0.64, 0.15], abs=0.02)
     assert stages["prepared"]["is_prepared"]
     assert any("Lamp" in name for name in stages["prepared"]["objects"])
     assert stages["camera"]["has_camera"]

@@ -18,7 +18,7 @@ ROOM = (
 CEILING = (0.00111, 0.27218)
 """A pick of the edge between wall and ceiling."""
 BALL = (0.2, 0.8)
-"""Where the ball stands: on the floor before the desk."""
+"""Where the ball stands: on the floor before the desk, at (0.71, -0.64) m."""
 LENS_MM = 24
 BELOW_NAMES = 36
 """From the top of a File Browser's list to the middle of its first file, under the columns' names [px]."""
@@ -42,6 +42,7 @@ def state():
         "sizes": {shape.name: [round(s, 4) for s in shape.size] for shape in found.shapes if shape.is_built},
         "objects": sorted(thing.name for thing in scene.objects),
         "is_prepared": place.irradiance is not None,
+        "ball": [round(x, 3) for thing in scene.objects if "Ball" in thing.name for x in thing.location],
         "has_camera": scene.camera is not None,
         "layers": len(scene.view_layers),
     }
@@ -142,10 +143,15 @@ def draw_room(stage):
 
 
 def add_ball(stage):
-    """Set the 3D cursor on the floor and stand a ball there."""
-    yield from click_at(stage, BALL, button="RIGHTMOUSE", shift=True)
-    yield
+    """Add a ball: it stands on the floor below the 3D cursor."""
     yield from press(stage, "add_ball", "MATTE", columns=(0.75,))
+
+
+def send_ball(stage):
+    """Send it to a spot of the photograph's floor."""
+    yield from press(stage, "panorama.send_to_place")
+    yield from click_at(stage, BALL)
+    yield
     yield from stage.picture("five_ball", look.box(view()))
 
 
@@ -184,7 +190,7 @@ def render(stage):
     yield from wait(5)
 
 
-STEPS = (drop_panorama, pick, draw_room, add_ball, prepare, add_camera, render)
+STEPS = (drop_panorama, pick, draw_room, add_ball, send_ball, prepare, add_camera, render)
 
 
 def five_minutes(stage):
