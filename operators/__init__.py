@@ -6,10 +6,8 @@ from . import (
     asset_library,
     calibration,
     clipped_light,
-    draw_shape,
     light,
     long_work,
-    pick_points,
     picking,
     pictures,
     placing,
@@ -20,10 +18,10 @@ from . import (
     set_files,
     sun_picker,
     surfaces,
-    tools,
     view_properties,
     viewing,
 )
+from .tools import base, draw_shape, pick_points
 
 OPERATORS = (
     long_work,
@@ -49,7 +47,7 @@ def register():
     """Register the scene's panorama set and its view settings, then the operators on them."""
     properties.register()
     view_properties.register()
-    tools.register()
+    base.register()
     for module in OPERATORS:
         for cls in module.classes:
             bpy.utils.register_class(cls)
@@ -62,6 +60,6 @@ def unregister():
     for module in reversed(OPERATORS):
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)
-    tools.unregister()
+    base.unregister()
     view_properties.unregister()
     properties.unregister()

@@ -12,8 +12,8 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..ibl_toolkit.images.atomic import refuse_unwritable
 from . import canvas, tools
-from .child_process import ChildProcess
-from .child_start import start_child
+from .child.process import ChildProcess
+from .child.start import start_child
 from .reporting import Reporting, possible, refuse_linked
 
 POLL_EVERY = 0.1
@@ -48,7 +48,7 @@ def running() -> str:
 class LongWork(Reporting):
     """An operator in two parts: `long_part` finds something, and `apply` gives it to the scene at once.
 
-    A class names `long_part`, a function of its module as in `child_job.Job`, and `missing(scene)`, why it
+    A class names `long_part`, a function of its module as in `child.job.Job`, and `missing(scene)`, why it
     cannot begin. `depends_on(scene)` is a text that changes with what the result would no longer fit.
     """
 

@@ -10,8 +10,8 @@ from expanded_panoramas.ibl_toolkit.drawn_shape import DrawnShape
 from expanded_panoramas.ibl_toolkit.stand import Stand
 from expanded_panoramas.ibl_toolkit.views import View
 from expanded_panoramas.operators.canvas import ImageCanvas, ViewCanvas
-from expanded_panoramas.operators.draw_tool import DrawTool
-from expanded_panoramas.operators.lengths import Lengths
+from expanded_panoramas.operators.tools.draw_tool import DrawTool
+from expanded_panoramas.operators.tools.lengths import Lengths
 
 STAND = Stand(WORLD_FROM_PANORAMA, CAMERA_HEIGHT)
 CALIBRATION = Calibration(WORLD_FROM_PANORAMA, CAMERA_HEIGHT, 0, 0, 0, 0, 1, ())

@@ -5,9 +5,9 @@ import numpy as np
 from ..ibl_toolkit.equirectangular import direction_from_uv, uv_from_direction
 from ..ibl_toolkit.overlay import HORIZON_COLOUR, XZ_COLOUR, YZ_COLOUR
 from ..operators.canvas import calibration_of, free_area
-from ..operators.pick_tool import PickTool
-from ..operators.picks_copy import PicksCopy, solve_live
 from ..operators.tools import active_tool
+from ..operators.tools.pick_tool import PickTool
+from ..operators.tools.picks_copy import PicksCopy, solve_live
 from . import drawing, magnifier, pick_texts
 from .panorama_curves import circle, curve_pixels, segments
 

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.draw_shape import DRAWN_KINDS
+from ..operators.tools.draw_shape import DRAWN_KINDS
 from .lists import SHAPE_ICONS
 
 ICONS = {**SHAPE_ICONS, "room": "HOME"}

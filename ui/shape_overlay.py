@@ -11,9 +11,9 @@ from ..ibl_toolkit.drawing import sizes, wireframe
 from ..ibl_toolkit.drawn_shape import on_floor
 from ..ibl_toolkit.overlay import ROLE_COLOURS, segment_points
 from ..operators.canvas import ImageCanvas, free_area
-from ..operators.draw_tool import DrawTool
-from ..operators.shape_lines import built_lines
 from ..operators.tools import active_tool
+from ..operators.tools.draw_tool import DrawTool
+from ..operators.tools.shape_lines import built_lines
 from . import drawing
 
 COLOURS = {role: tuple(value / 255 for value in colour) for role, colour in ROLE_COLOURS.items()}

@@ -15,7 +15,10 @@ pytestmark = pytest.mark.skipif(not BLENDER, reason="needs BLENDER=/path/to/blen
 def blender(user_folder, *command):
     return subprocess.run(
         [*shlex.split(BLENDER), "--background", "--command", *command],
-        capture_output=True, text=True, env={**os.environ, "BLENDER_USER_RESOURCES": str(user_folder)})
+        capture_output=True,
+        text=True,
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(user_folder)},
+    )
 
 
 def test_zip_installs_and_the_command_answers(tmp_path):

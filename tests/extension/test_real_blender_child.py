@@ -19,7 +19,8 @@ pytestmark = pytest.mark.skipif(not BLENDER, reason="needs BLENDER=/path/to/blen
 PARENT = """
 import bpy, json, sys, time
 from bl_ext.user_default.expanded_panoramas.cycles_integration import preparation
-from bl_ext.user_default.expanded_panoramas.operators import child_start, light
+from bl_ext.user_default.expanded_panoramas.operators import light
+from bl_ext.user_default.expanded_panoramas.operators.child import start
 
 def until(done):
     end = time.monotonic() + 60
@@ -32,7 +33,7 @@ bpy.ops.panorama.calibrate()
 bpy.ops.panorama.build()
 scene = bpy.context.scene
 objects = len(bpy.data.objects)
-child = child_start.start_child(light.measure_light, scene, {{"most": None}})
+child = start.start_child(light.measure_light, scene, {{"most": None}})
 until(child.is_done)
 measured = child.value()
 child.stop().join()
@@ -40,7 +41,7 @@ unchanged = (len(bpy.data.objects), bpy.data.filepath, scene.panorama_place.irra
 preparation.apply(scene, measured)
 lamps = len(scene.panorama_place.lights.objects)
 
-child = child_start.start_child(light.measure_light, scene, {{"most": None}})
+child = start.start_child(light.measure_light, scene, {{"most": None}})
 until(lambda: child.step == "irradiance")
 child.stop().join()
 print("FOUND", json.dumps({{
@@ -70,7 +71,10 @@ def test_it_measures_for_its_parent_and_ends_when_told(room, tmp_path):
     script.write_text(PARENT.format(set_path=str(room)), encoding="utf-8")
     done = subprocess.run(
         [*shlex.split(BLENDER), "--background", "--python-exit-code", "9", "--python", str(script)],
-        capture_output=True, text=True, env={**os.environ, "BLENDER_USER_RESOURCES": str(user)})
+        capture_output=True,
+        text=True,
+        env={**os.environ, "BLENDER_USER_RESOURCES": str(user)},
+    )
     assert done.returncode == 0, done.stderr
     found = json.loads(next(line for line in done.stdout.splitlines() if line.startswith("FOUND"))[6:])
     assert found["unchanged"]

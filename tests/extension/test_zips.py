@@ -7,8 +7,16 @@ import build_zips
 import pytest
 
 SHIPPED = {
-    "LICENSE", "README.md", "__init__.py", "blender_manifest.toml", "cli",
-    "cycles_integration", "ibl_toolkit", "operators", "sample_scenes", "ui",
+    "LICENSE",
+    "README.md",
+    "__init__.py",
+    "blender_manifest.toml",
+    "cli",
+    "cycles_integration",
+    "ibl_toolkit",
+    "operators",
+    "sample_scenes",
+    "ui",
 }
 
 

@@ -16,7 +16,7 @@ LENGTH_M = 1e-5  # picks are stored in single precision
 
 def drawing(bpy, kind, of=""):
     """A hand that draws in the scene, with the tool as the operator makes it."""
-    from expanded_panoramas.operators.draw_shape import PANORAMA_OT_draw_shape
+    from expanded_panoramas.operators.tools.draw_shape import PANORAMA_OT_draw_shape
 
     reports = []
     operator = SimpleNamespace(kind=kind, of=of, report=lambda level, text: reports.append(text))

@@ -250,7 +250,7 @@ def test_digits_are_read_with_shift_held():
 
 
 def test_the_scenes_units():
-    from expanded_panoramas.operators.lengths import Lengths
+    from expanded_panoramas.operators.tools.lengths import Lengths
 
     inches = Lengths("IMPERIAL", "in", 1.0)
     assert inches.value("10") == pytest.approx(0.254)

@@ -32,8 +32,8 @@ def long_work(fresh_blend):
 @pytest.fixture
 def fake(long_work, monkeypatch):
     """fake(behaviour, result) makes an operator whose child does that, and its context."""
-    from expanded_panoramas.operators import child_start
-    from expanded_panoramas.operators.child_job import Result
+    from expanded_panoramas.operators.child import start
+    from expanded_panoramas.operators.child.job import Result
 
     def make(behaviour, result=None):
         def command(folder):
@@ -44,7 +44,7 @@ def fake(long_work, monkeypatch):
             code = f"import os, sys, time; os.chdir({folder!r}); {tell}; {RESULTS[behaviour]}"
             return [sys.executable, "-c", code]
 
-        monkeypatch.setattr(child_start, "command", command)
+        monkeypatch.setattr(start, "command", command)
         return operator(long_work), window_context()
 
     return make
@@ -225,11 +225,11 @@ def test_one_at_a_time(fresh_blend, long_work, fake, tmp_path):
 @pytest.fixture
 def start_child(fresh_blend, monkeypatch):
     """Starts the real child, as the Python of the wheel."""
-    from expanded_panoramas.operators import child_start
+    from expanded_panoramas.operators.child import start
 
-    blender = child_start.command
-    monkeypatch.setattr(child_start, "command", lambda folder: [sys.executable, "-c", blender(folder)[-1]])
-    return child_start.start_child
+    blender = start.command
+    monkeypatch.setattr(start, "command", lambda folder: [sys.executable, "-c", blender(folder)[-1]])
+    return start.start_child
 
 
 def wait_for(child):

@@ -47,9 +47,9 @@ def drag(tool, start, end, **more):
 
 
 def new_tool(kind="RECTANGLE", plane="FLOOR", picks=(), camera_height=1.5, image=None):
-    from expanded_panoramas.operators.pick_tool import PickTool
-    from expanded_panoramas.operators.picks_copy import PicksCopy
-    from expanded_panoramas.operators.picks_editing import PicksEditing
+    from expanded_panoramas.operators.tools.pick_tool import PickTool
+    from expanded_panoramas.operators.tools.picks_copy import PicksCopy
+    from expanded_panoramas.operators.tools.picks_editing import PicksEditing
 
     editing = PicksEditing(PicksCopy("room.exr", list(picks), camera_height))
     editing.begin(kind, plane, "X")
@@ -298,7 +298,7 @@ def test_clicks_snap_to_corners_unless_told_not_to():
 
 
 def operator(context, kind="SELECTED", plane="FLOOR"):
-    from expanded_panoramas.operators.pick_points import PANORAMA_OT_pick_points as Operator
+    from expanded_panoramas.operators.tools.pick_points import PANORAMA_OT_pick_points as Operator
 
     said = []
     this = SimpleNamespace(kind=kind, plane=plane, axis="X", report=lambda level, text: said.append(text))
@@ -310,7 +310,7 @@ def operator(context, kind="SELECTED", plane="FLOOR"):
 
 
 def stored(state):
-    from expanded_panoramas.operators.picks_copy import PicksCopy
+    from expanded_panoramas.operators.tools.picks_copy import PicksCopy
 
     return PicksCopy.of(state)
 
@@ -363,7 +363,7 @@ def test_picks_that_contradict_are_kept_and_the_calibration_stays(fresh_blend, t
 
 
 def test_it_follows_the_sidebar(fresh_blend, tmp_path):
-    from expanded_panoramas.operators.pick_points import _follow
+    from expanded_panoramas.operators.tools.pick_points import _follow
 
     bpy = fresh_blend
     state = calibrated(bpy, tmp_path)
@@ -381,7 +381,7 @@ def test_it_follows_the_sidebar(fresh_blend, tmp_path):
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_pixels_of_any_image(channels):
-    from expanded_panoramas.operators.pick_points import _give_pixels
+    from expanded_panoramas.operators.tools.pick_points import _give_pixels
 
     tool = new_tool()
     _give_pixels(tool, np.full((130, 260, channels), 1e9, np.float32))
@@ -417,12 +417,12 @@ def test_a_removed_image_does_not_stop_the_confirmation(fresh_blend, tmp_path):
 
 
 def test_picks_stay_as_they_are_while_a_tool_edits_a_copy(fresh_blend, tmp_path, monkeypatch):
-    from expanded_panoramas.operators import tools
+    from expanded_panoramas.operators.tools import base
 
     bpy = fresh_blend
     state = calibrated(bpy, tmp_path)
     count = len(state.picks)
-    monkeypatch.setattr(tools, "_active", operator(bpy.context).tool)
+    monkeypatch.setattr(base, "_active", operator(bpy.context).tool)
     for change in (
         bpy.ops.panorama.remove_item,
         bpy.ops.panorama.move_item,

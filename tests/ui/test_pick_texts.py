@@ -8,9 +8,9 @@ RUG = [(0.5738, 0.7323), (0.4262, 0.7323), (0.4737, 0.6011), (0.5263, 0.6011)]
 
 
 def tool(count=4, camera_height=1.5, kind="RECTANGLE"):
-    from expanded_panoramas.operators.pick_tool import PickTool
-    from expanded_panoramas.operators.picks_copy import PicksCopy
-    from expanded_panoramas.operators.picks_editing import PicksEditing
+    from expanded_panoramas.operators.tools.pick_tool import PickTool
+    from expanded_panoramas.operators.tools.picks_copy import PicksCopy
+    from expanded_panoramas.operators.tools.picks_editing import PicksEditing
 
     editing = PicksEditing(PicksCopy("room.exr", [], camera_height))
     editing.begin(kind, "FLOOR", "X")
@@ -61,7 +61,7 @@ def test_lines_go_on_and_a_length_is_the_scale():
 def test_keys_have_icons():
     import bpy
 
-    from expanded_panoramas.operators.pick_tool import PickTool
+    from expanded_panoramas.operators.tools.pick_tool import PickTool
 
     icons = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items
     assert all(icon in icons for icon, _ in PickTool.keys)

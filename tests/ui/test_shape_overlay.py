@@ -13,7 +13,7 @@ from drawing_hand import FLAT, STAND, Hand, look_from
 @pytest.fixture
 def drawn(fresh_blend, monkeypatch):
     """Draws the overlay on a canvas and gives what was drawn: lists of lines, dots and texts."""
-    from expanded_panoramas.operators import tools
+    from expanded_panoramas.operators.tools import base
     from expanded_panoramas.ui import drawing, shape_overlay
 
     found = SimpleNamespace(lines=[], dots=[], texts=[])
@@ -22,7 +22,7 @@ def drawn(fresh_blend, monkeypatch):
     monkeypatch.setattr(drawing, "text", lambda at, string, *_, **__: found.texts.append(string))
 
     def draw(tool, canvas):
-        monkeypatch.setattr(tools, "_active", tool)
+        monkeypatch.setattr(base, "_active", tool)
         for kind in (found.lines, found.dots, found.texts):
             kind.clear()
         space = SimpleNamespace(overlay=SimpleNamespace(show_overlays=True))
@@ -98,13 +98,13 @@ def test_built_shapes_are_outlined_where_they_are_not_seen(drawn, fresh_blend, t
 
 
 def test_the_panorama_covers_meshes_only_where_a_tool_sees_them_on_it(fresh_blend, monkeypatch):
-    from expanded_panoramas.operators import tools
+    from expanded_panoramas.operators.tools import base
     from expanded_panoramas.ui.background import painting
 
     at_origin = look_from((0, 0, STAND.camera_height), (1, 0, 0)).view
     beside = look_from((0.2, 0, STAND.camera_height), (1, 0, 0)).view
     assert not painting.covers_meshes(at_origin)
-    monkeypatch.setattr(tools, "_active", Hand("square").tool)
+    monkeypatch.setattr(base, "_active", Hand("square").tool)
     assert painting.covers_meshes(at_origin)
     assert not painting.covers_meshes(beside)
     solid = SimpleNamespace(type="SOLID", show_xray=False, xray_alpha=0.5)

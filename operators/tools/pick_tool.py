@@ -6,10 +6,10 @@ import copy
 
 import numpy as np
 
-from ..ibl_toolkit.corner_snap import Snap, snap_to_corner
-from ..ibl_toolkit.equirectangular import direction_from_uv, uv_from_direction
-from . import tools
-from .canvas import ViewCanvas
+from ...ibl_toolkit.corner_snap import Snap, snap_to_corner
+from ...ibl_toolkit.equirectangular import direction_from_uv, uv_from_direction
+from ..canvas import ViewCanvas
+from . import base
 from .lengths import Lengths, typed_character
 from .picks_copy import Live, solve_live
 from .picks_editing import PicksEditing
@@ -31,7 +31,7 @@ BLENDERS_OWN = ("N", "T")
 METRES = Lengths("METRIC", "m", 1.0)
 
 
-class PickTool(tools.Tool):
+class PickTool(base.Tool):
     """Edits a copy of all picks.
 
     image: (H, W, 3) linear radiance, for corners and the magnifier; None where there is none to read.
@@ -90,21 +90,21 @@ class PickTool(tools.Tool):
         if self.dragged is not None:
             return self._drag(on, xy, event)
         if event.value not in PRESSES or event.type.endswith("MOUSEMOVE"):
-            return tools.RUNNING if event.type in tools.MOUSE else tools.PASS
+            return base.RUNNING if event.type in base.MOUSE else base.PASS
         if event.type in ("RET", "NUMPAD_ENTER"):
-            return tools.CONFIRM
+            return base.CONFIRM
         if event.type in ("ESC", "RIGHTMOUSE"):
-            return tools.CANCEL
+            return base.CANCEL
         if on is None:
-            return tools.PASS
+            return base.PASS
         if event.type == "LEFTMOUSE":
             self._press(on, xy, event)
-            return tools.RUNNING
+            return base.RUNNING
         return self._key(on, event)
 
     def _key(self, on, event):
         if self._type(event):  # first, since letters may belong to a unit
-            return tools.RUNNING
+            return base.RUNNING
         if event.type in ARROWS:
             self._nudge(on, np.array(ARROWS[event.type], float) * (0.1 if event.shift else 1))
         elif event.type == "TAB":
@@ -118,8 +118,8 @@ class PickTool(tools.Tool):
             self.snapping = not self.snapping
         else:
             swallowed = len(event.type) == 1 and not event.ctrl and event.type not in BLENDERS_OWN
-            return tools.RUNNING if swallowed else tools.PASS
-        return tools.RUNNING
+            return base.RUNNING if swallowed else base.PASS
+        return base.RUNNING
 
     def _press(self, on, xy, event):
         self.problem = ""
@@ -147,13 +147,13 @@ class PickTool(tools.Tool):
             held, self.dragged = self.dragged, None
             if self._past and self._past[-1].copied == self.editing.copied:
                 self._put_back(held, shared=True)
-        elif event.type in tools.MOUSE and on is not None:
+        elif event.type in base.MOUSE and on is not None:
             moved = self._pressed_at is None or np.linalg.norm(xy - self._pressed_at) > STILL_PIXELS
             snap = self.snapped(on, xy + self._held_from, event.ctrl) if moved else None
             if snap is not None:
                 self._pressed_at = None
                 self.editing.point(self.dragged).set(snap.uv)
-        return tools.RUNNING
+        return base.RUNNING
 
     def _put_back(self, held, *, shared=False):
         """Undo a press on a point and select it; or, if it may be shared, set the next point there, too."""

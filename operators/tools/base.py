@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import bpy
 
-from . import canvas
-from .reporting import Reporting
+from .. import canvas
+from ..reporting import Reporting
 
 RUNNING, PASS, CONFIRM, CANCEL = "RUNNING", "PASS", "CONFIRM", "CANCEL"
 """What a tool makes of an event: it was used; it is Blender's; the tool is done; it is given up."""

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
-from ..ibl_toolkit.calibration import Calibration, CalibrationError, ClickReport, calibrate_with_report
-from . import conversion, progress
-from .canvas import UNCALIBRATED
+from ...ibl_toolkit.calibration import Calibration, CalibrationError, ClickReport, calibrate_with_report
+from .. import conversion, progress
+from ..canvas import UNCALIBRATED
 
 POINT_COUNT = {"RECTANGLE": 4}
 """Points of a new pick; 2 of all other kinds."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..ibl_toolkit.calibration.picks import AXES, PLANES
-from . import conversion
+from ...ibl_toolkit.calibration.picks import AXES, PLANES
+from .. import conversion
 from .picks_copy import PickCopy, PicksCopy, PointCopy
 
 

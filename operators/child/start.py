@@ -9,9 +9,8 @@ from pathlib import Path
 
 import bpy
 
-from . import child_job
-from .child_job import FILE, JOB, Job, save_edited_images
-from .child_process import ChildProcess
+from .job import FILE, JOB, Job, save_edited_images
+from .process import ChildProcess
 
 
 def start_child(long_part, scene, inputs: dict) -> ChildProcess:
@@ -46,6 +45,6 @@ def command(folder: str) -> list[str]:
     """The command line of the child: this Blender with the user's settings, for the sake of their GPU."""
     code = (
         f"import sys; sys.path += [path for path in {sys.path!r} if path not in sys.path]; "
-        f"from importlib import import_module; import_module({child_job.__name__!r}).main({folder!r})"
+        f"from importlib import import_module; import_module({Job.__module__!r}).main({folder!r})"
     )
     return [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python-expr", code]

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..ibl_toolkit.drawn_shape import on_floor
+from ...ibl_toolkit.drawn_shape import on_floor
+from .base import CANCEL, CONFIRM, PASS, RUNNING, Tool
 from .draw_hints import hints
 from .lengths import typed_character
-from .tools import CANCEL, CONFIRM, PASS, RUNNING, Tool
 
 GRAB = 9
 """How near to a point the mouse takes hold of it [px of a plain screen]."""

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..cycles_integration.pieces import built_pieces
-from ..ibl_toolkit.stand import Stand
-from .canvas import calibration_of
+from ...cycles_integration.pieces import built_pieces
+from ...ibl_toolkit.stand import Stand
+from ..canvas import calibration_of
 
 MOST_UPRIGHTS = 8
 """Of a round shape's upright edges, so many are drawn."""

@@ -12,7 +12,7 @@ import threading
 import time
 from pathlib import Path
 
-from .child_job import OUTPUT, PROGRESS, RESULT
+from .job import OUTPUT, PROGRESS, RESULT
 
 GRACE = 1.0
 """A child that is to end has so long [s] to clean up behind itself."""

@@ -5,14 +5,15 @@ import threading
 import bpy
 import numpy as np
 
-from ..cycles_integration.blender_images import array_from_image
-from . import progress, solving, tools
+from ...cycles_integration.blender_images import array_from_image
+from .. import progress, solving
+from ..properties import AXES, PICK_KINDS, PLANES
+from ..reporting import possible
+from . import base
 from .lengths import Lengths
 from .pick_tool import PickTool
 from .picks_copy import PicksCopy
 from .picks_editing import PicksEditing
-from .properties import AXES, PICK_KINDS, PLANES
-from .reporting import possible
 
 BRIGHTEST = 60000
 """What half a float can hold; a sun is no brighter for the magnifier."""
@@ -21,7 +22,7 @@ BAND, PATIENCE = 64, 0.3
 SELECTED = ("SELECTED", "Selected Pick", "The pick that is selected in the list")
 
 
-class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
+class PANORAMA_OT_pick_points(base.ToolOperator, bpy.types.Operator):
     """Set and drag the points of picks on the panorama, in 3D Views and Image Editors, with the result drawn
     live; Enter calibrates"""
 
@@ -39,7 +40,7 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         """There must be a panorama, and no other tool."""
-        return possible(cls, progress.image_missing(context.scene) or tools.busy())
+        return possible(cls, progress.image_missing(context.scene) or base.busy())
 
     def make_tool(self, context):
         """A copy of the picks, and of the image's pixels."""
@@ -67,11 +68,11 @@ class PANORAMA_OT_pick_points(tools.ToolOperator, bpy.types.Operator):
     def modal(self, context, event):
         """Follow the sidebar, let go where the scene or its panorama is another, and work on."""
         tool = self.tool
-        if tool is tools.active_tool():
+        if tool is base.active_tool():
             scene = bpy.data.scenes.get(tool.scene_name)
             if scene is None or scene.panorama_set.image_path != tool.image_path:
                 self.report({"WARNING"}, "Pick Points ended: its scene or panorama is another now")
-                tools.close_tool()
+                base.close_tool()
             elif scene != context.scene:
                 return {"PASS_THROUGH"}
             else:
@@ -116,7 +117,7 @@ def _give_pixels(tool, pixels):
         pixels = np.repeat(pixels[..., :1], 3, axis=2)
     halves = np.empty(pixels.shape, np.float16)
     for row in range(0, len(pixels), BAND):
-        if tools.active_tool() not in (tool, None):
+        if base.active_tool() not in (tool, None):
             return
         halves[row : row + BAND] = np.minimum(pixels[row : row + BAND], BRIGHTEST)
     tool.image = halves

@@ -3,17 +3,17 @@
 import bpy
 import numpy as np
 
-from ..ibl_toolkit.drawing import FLAT, floor_shape
-from ..ibl_toolkit.drawn_shape import ROOM, DrawnShape
-from ..ibl_toolkit.equirectangular import direction_from_uv
-from ..ibl_toolkit.stand import Stand
-from . import conversion, progress, solving
-from .canvas import calibration_of
+from ...ibl_toolkit.drawing import FLAT, floor_shape
+from ...ibl_toolkit.drawn_shape import ROOM, DrawnShape
+from ...ibl_toolkit.equirectangular import direction_from_uv
+from ...ibl_toolkit.stand import Stand
+from .. import conversion, progress, solving
+from ..canvas import calibration_of
+from ..properties import SHAPE_KINDS
+from ..reporting import possible
+from .base import ToolOperator
 from .draw_tool import DrawTool
 from .lengths import Lengths
-from .properties import SHAPE_KINDS
-from .reporting import possible
-from .tools import ToolOperator
 
 DRAWN_KINDS = (
     (

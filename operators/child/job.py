@@ -22,7 +22,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..ibl_toolkit.images import atomic
+from ...ibl_toolkit.images import atomic
 
 JOB, FILE, PROGRESS, RESULT, OUTPUT = "job.pickle", "scene.blend", "progress.jsonl", "result.pickle", "output"
 SAMPLES = re.compile(r"Sample (\d+)/(\d+)")
@@ -96,7 +96,7 @@ def _end_with_parent(*rubbish):
 def _register():
     """Register the extension, unless the user's settings have it enabled."""
     if not hasattr(bpy.types.Scene, "panorama_place"):
-        import_module(__package__.rpartition(".")[0]).register()
+        import_module(__package__.rpartition(".")[0].rpartition(".")[0]).register()
 
 
 def _take_edited_images(folder, job):
