@@ -72,8 +72,9 @@ def play(blender, user, display, jobs, folder):
     Raises NoWindowError where BLENDER opens none; RuntimeError with what it printed where it ended too early.
     """
     printed, written = folder / "printed.txt", folder / "notes.json"
-    arguments = ["--window-geometry", 0, 0, WIDTH, HEIGHT, "--enable-event-simulate"]
-    arguments += ["--python", INSIDE / "driver.py", "--", INSIDE / jobs, folder]
+    # The driver comes first: in the background Blender refuses what is about a window, and stops there.
+    arguments = ["--python", INSIDE / "driver.py", "--window-geometry", 0, 0, WIDTH, HEIGHT]
+    arguments += ["--enable-event-simulate", "--", INSIDE / jobs, folder]
     with started(blender, user, printed, arguments, display.name) as process:
         late = time.monotonic() + SECONDS
         while process.poll() is None and time.monotonic() < late:

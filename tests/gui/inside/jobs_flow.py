@@ -148,7 +148,8 @@ def add_ball(stage):
 
 
 def send_ball(stage):
-    """Send it to a spot of the photograph's floor."""
+    """Look at a spot of the photograph's floor, and send it there."""
+    yield from look.bring_into_view(stage.hand, view(), look.direction_of(BALL))
     yield from press(stage, "panorama.send_to_place")
     yield from click_at(stage, BALL)
     yield
