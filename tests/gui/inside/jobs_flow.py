@@ -1,6 +1,7 @@
 """The manual's five minutes: a panorama dropped, calibrated, rebuilt and rendered into. Runs in Blender."""
 
 import importlib
+import time
 
 import bpy
 import hotel
@@ -164,7 +165,8 @@ def is_idle():
 def prepare(stage):
     """Prepare the light, looking at the progress."""
     yield from press(stage, "panorama.prepare")
-    yield from wait(30)
+    began = time.monotonic()
+    yield Until(lambda: is_idle() or time.monotonic() > began + 6, "progress to be shown")
     yield from stage.picture("five_preparing", (0, 0, look.area("VIEW_3D").width, 330))
     yield Until(is_idle, "the light", 400)
     yield
