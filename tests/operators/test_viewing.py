@@ -52,3 +52,16 @@ def test_before_calibration_the_eye_is_where_the_picture_is_shown_from(in_view):
     with override:
         bpy.ops.panorama.look_around()
     assert tuple(space.region_3d.view_location) == (0, 0, 1.5)
+
+
+def test_views_that_look_around_follow_the_camera_height_and_others_stay(in_view, tmp_path):
+    bpy, override, space = in_view
+    state, view = bpy.context.scene.panorama_set, space.region_3d
+    calibrated(bpy, tmp_path)
+    with override:
+        bpy.ops.panorama.look_around()
+    state.camera_height = 1.2
+    assert tuple(view.view_location) == pytest.approx((0, 0, 1.2))
+    view.view_location, view.view_distance = (1, 2, 3), 4
+    state.camera_height = 1.4
+    assert tuple(view.view_location) == (1, 2, 3)
