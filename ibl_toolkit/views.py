@@ -80,6 +80,11 @@ class View:
         """Whether the picture shows the floor where it is: from the panorama's origin, and in plans."""
         return not self.is_perspective or bool(np.linalg.norm(self.eye) <= AT_ORIGIN * self.camera_height)
 
+    @property
+    def runs_along_floor(self):
+        """Whether it is an orthographic view that would show one colour of the panorama all over."""
+        return not self.is_perspective and bool(abs(self.ray @ self.up) < PARALLEL)
+
     def rays_at(self, xy):
         """Starts [m] and directions of the rays, (..., 3) each, at (..., 2) [px] as in `directions_at`."""
         x, y = np.moveaxis(2 * np.asarray(xy, np.float64) / self.size - 1, -1, 0)[..., None]
@@ -93,10 +98,9 @@ class View:
         start, ray = self.rays_at(xy)
         if self.is_perspective:
             return ray
-        sinking = self.ray @ self.up
-        if abs(sinking) < PARALLEL:
+        if self.runs_along_floor:
             return np.broadcast_to(self.ray, start.shape)
-        return start - ((start @ self.up + self.camera_height) / sinking)[..., None] * ray
+        return start - ((start @ self.up + self.camera_height) / (self.ray @ self.up))[..., None] * ray
 
     def pixels_of(self, directions):
         """Where (..., 2) [px] a view shows directions (..., 3) of the panorama; NaN where it does not.

@@ -32,6 +32,8 @@ class ViewCanvas:
 
     def uv_at(self, xy):
         """The image point (2,) shown at (2,) [region px]; None where none is."""
+        if self.view.runs_along_floor:
+            return None
         direction = self.view.directions_at(np.asarray(xy, np.float64) + 0.5)
         return uv_from_direction(direction) if direction.any() else None
 

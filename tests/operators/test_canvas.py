@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 pytest.importorskip("bpy")
@@ -45,3 +46,14 @@ def test_clicks_on_the_navigation_buttons_are_theirs(xy, show, expected):
 
     preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
     assert on_navigation(SimpleNamespace(preferences=preferences), *an_area(show), xy) is expected
+
+
+def test_there_is_no_picture_to_pick_in_a_view_along_the_floor():
+    from expanded_panoramas.ibl_toolkit.views import View
+    from expanded_panoramas.operators.canvas import ViewCanvas
+
+    front = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+    above = np.eye(4)
+    for view, shows in ((front, False), (above, True)):
+        canvas = ViewCanvas(View.from_matrices(np.eye(4), view, np.eye(3), 1.5, (100, 100)))
+        assert (canvas.uv_at((30, 40)) is not None) == shows

@@ -16,7 +16,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Color, Matrix
 
-from ...ibl_toolkit.views import PARALLEL, View
+from ...ibl_toolkit.views import View
 from ...operators.canvas import calibration_of
 from ...operators.tools import active_tool
 from . import far_floor, shader, theme
@@ -44,7 +44,7 @@ def paint():
     if layer is None or image is None or not is_shown(context.scene, context.space_data):
         return
     view = view_of(context.scene, context.region, context.region_data)
-    if runs_along_floor(view):
+    if view.runs_along_floor:  # the theme's colour is better then
         return
     texture = gpu.texture.from_image(image)
     gain = 2.0**context.scene.panorama_view.exposure
@@ -82,11 +82,6 @@ def view_of(scene, region, region_data) -> View:
     """The View of a 3D view's region."""
     matrices = region_data.window_matrix, region_data.view_matrix
     return View.from_matrices(*matrices, *calibration_of(scene), (region.width, region.height))
-
-
-def runs_along_floor(view) -> bool:
-    """Whether an orthographic view would show one colour of the panorama all over: the theme's is better."""
-    return not view.is_perspective and abs(view.ray @ view.up) < PARALLEL
 
 
 def covers_meshes(view) -> bool:

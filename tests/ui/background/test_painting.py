@@ -119,15 +119,13 @@ def test_an_orthographic_view_along_the_floor_is_left_alone(fresh_blend, tilt_de
     from mathutils import Matrix
 
     from expanded_panoramas.ibl_toolkit.views import View
-    from expanded_panoramas.ui.background import painting
 
     view_matrix = Matrix.Rotation(np.radians(-tilt_deg), 4, "X")
     along = View.from_matrices(np.diag([0.1, 0.1, -0.01, 1]), view_matrix, np.eye(3), 1.5, (200, 100))
-    assert painting.runs_along_floor(along) == expected
+    assert along.runs_along_floor == expected
     perspective = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, -0.02], [0, 0, -1, 0]])
-    assert not painting.runs_along_floor(
-        View.from_matrices(perspective, view_matrix, np.eye(3), 1.5, (200, 100))
-    )
+    ahead = View.from_matrices(perspective, view_matrix, np.eye(3), 1.5, (200, 100))
+    assert not ahead.runs_along_floor
 
 
 def test_nothing_stays_behind(fresh_blend):
