@@ -59,6 +59,7 @@ class PANORAMA_MT_add_pick(bpy.types.Menu):
 
     def draw(self, context):
         """All kinds; each begins to be picked on the panorama."""
+        self.layout.operator_context = "INVOKE_REGION_WIN"  # a menu on a key of one's own would execute
         for text, kind, choice in PICK_ENTRIES:
             icon = PICK_ICONS.get(kind, "DRIVER_DISTANCE")
             button = self.layout.operator("panorama.pick_points", text=text, icon=icon)
