@@ -14,6 +14,13 @@ def test_clicks_on_the_flat_image_are_exact(notes):
     assert (found["solved"], found["still"]) == (True, "")
 
 
+def test_verticals_come_one_after_the_other(notes):
+    found = notes["two_verticals"]
+    assert (found["ran"], found["still"]) == ("Pick Points", "")
+    assert found["new"] == ["VERTICAL", "VERTICAL"]
+    assert found["tilt_deg"] == pytest.approx(0.06, abs=0.1)
+
+
 def test_undo_within_a_tool_takes_its_clicks_only(notes):
     found = notes["undo_within"]
     assert found["counts"] == [3, 2, 1, 2]

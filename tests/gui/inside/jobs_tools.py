@@ -8,6 +8,9 @@ from jobs_interrupted import sample, tool
 BOX = (0.35, 0.8), (0.25, 0.8), (0.25, 0.72)
 """Picks of the floor: a corner of a box, and the sides on which its next ones are."""
 
+VERTICALS = ((0.10741, 0.72), (0.10754, 0.30434)), ((0.9866, 0.69387), (0.98647, 0.38175))
+"""Picks of both ends of upright edges of the room."""
+
 
 def fresh(stage):
     """The sample room with its calibration alone."""
@@ -110,4 +113,24 @@ def typed_box(stage):
     stage.note(sizes=state()["sizes"], still=tool())
 
 
-JOBS = (on_the_flat_image, undo_within, area_fills_the_window, typed_box)
+def two_verticals(stage):
+    """Choose Verticals from the menu of picks, click both ends of two, confirm."""
+    yield from fresh(stage)
+    before = len(bpy.context.scene.panorama_set.picks)
+    yield from stage.hand.move(*look.middle(look.region(view())))
+    with look.override(view()):
+        bpy.ops.wm.call_menu(name="PANORAMA_MT_add_pick")
+    yield
+    yield from stage.hand.key("V")
+    yield
+    ran = tool()
+    for uv in (uv for ends in VERTICALS for uv in ends):
+        yield from click_at(stage, uv)
+    yield from stage.hand.key("RET")
+    yield
+    found = bpy.context.scene.panorama_set
+    new = [pick.kind for pick in found.picks[before:]]
+    stage.note(ran=ran, new=new, tilt_deg=found.result.tilt_deg, still=tool())
+
+
+JOBS = (two_verticals, on_the_flat_image, undo_within, area_fills_the_window, typed_box)
