@@ -13,6 +13,8 @@ BALLS = (
     ("MIRROR", "Mirror Ball", "A perfect mirror: shows what is reflected, and where"),
     ("MATTE", "Matte Ball", "Grey and diffuse, albedo 0.5: shows where light comes from, and its colour"),
 )
+DISPLAY_SIZE = 0.2
+"""Of a camera [m]: it often stands where the view's eye is."""
 
 
 class PANORAMA_OT_add_ball(Reporting, bpy.types.Operator):
@@ -64,6 +66,7 @@ class PANORAMA_OT_add_camera(Reporting, bpy.types.Operator):
         target = aimed_at.matrix_world.translation if aimed_at else context.scene.cursor.location
         camera.location = place_of(context.scene).origin.matrix_world.translation
         camera.data.lens, camera.data.clip_start = 24, 0.01
+        camera.data.display_size = DISPLAY_SIZE
         camera.rotation_euler = (target - camera.location).to_track_quat("-Z", "Y").to_euler()
         _add_selected(context, camera)
         context.scene.camera = camera
@@ -103,6 +106,7 @@ class PANORAMA_OT_camera_from_view(Reporting, bpy.types.Operator):
             camera.location = place_of(context.scene).origin.matrix_world.translation
         # A view is cut out of twice the film of a camera: its lens of 50 mm sees what one of 25 mm does.
         camera.data.lens, camera.data.clip_start = space.lens / 2, 0.01
+        camera.data.display_size = DISPLAY_SIZE
         _add_selected(context, camera)
         context.scene.camera = camera
         return (

@@ -7,6 +7,10 @@ from .reporting import Reporting, possible
 
 ARM = 1e-4
 """What a view turns around lies so far before its eye [m]: turning it turns the head."""
+BLENDERS_LENS, WIDE_LENS = 50.0, 24.0
+"""Of a view [mm]: the one that it begins with is narrow for a room."""
+PLAN_ARM = 6.0
+"""Distance of the plan's eye [camera heights], which gives its scale: some metres across."""
 
 
 class PANORAMA_OT_look_around(Reporting, bpy.types.Operator):
@@ -23,12 +27,34 @@ class PANORAMA_OT_look_around(Reporting, bpy.types.Operator):
         return possible(cls, _look_missing(context))
 
     def work(self, context):
-        """Move the eye, and keep the direction and the lens."""
+        """Move the eye, keep the direction, and widen a lens that nobody has set."""
         view = context.space_data.region_3d
+        if context.space_data.lens == BLENDERS_LENS:
+            context.space_data.lens = WIDE_LENS
         x, y, z = _origin(context.scene)
         view.view_perspective = "PERSP"
         view.view_location, view.view_distance = (x, y, z), ARM
         return f"The view is {z:.2f} m above the floor, where the panorama was captured"
+
+
+class PANORAMA_OT_look_at_plan(Reporting, bpy.types.Operator):
+    """Look down on the place: the panorama is shown as it lies on the floor, a plan to draw on"""
+
+    bl_idname = "panorama.look_at_plan"
+    bl_label = "Plan"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        """There must be a panorama, and a view that may turn."""
+        return possible(cls, _look_missing(context))
+
+    def work(self, context):
+        """From above, orthographic, the point of capture in the middle."""
+        view, height = context.space_data.region_3d, _origin(context.scene)[2]
+        view.view_perspective, view.view_rotation = "ORTHO", (1, 0, 0, 0)
+        view.view_location, view.view_distance = (0, 0, 0), PLAN_ARM * height
+        return "From above, x to the right and y upwards"
 
 
 def follow_origin(scene):
@@ -59,4 +85,4 @@ def _look_missing(context):
     return "This view's rotation is locked" if space.region_3d.lock_rotation else ""
 
 
-classes = (PANORAMA_OT_look_around,)
+classes = (PANORAMA_OT_look_around, PANORAMA_OT_look_at_plan)

@@ -22,12 +22,19 @@ class PANORAMA_MT_draw_shape(bpy.types.Menu):
 
 
 def draw_buttons(layout, context):
-    """A button for the room, and the menu; in a 3D View first the one that shows the floor in its place."""
+    """A button for the room, and the menu; in a 3D View first those that show the floor in its place."""
     if context.space_data is not None and context.space_data.type == "VIEW_3D":
-        layout.operator("panorama.look_around", icon="ORIENTATION_GIMBAL")
+        draw_looks(layout)
     row = layout.row(align=True)
     row.operator("panorama.draw_shape", text="Draw Room", icon=ICONS["room"]).kind = "room"
     row.menu("PANORAMA_MT_draw_shape", text="Draw Shape", icon="GREASEPENCIL")
+
+
+def draw_looks(layout):
+    """The two views in which the panorama shows the floor where it is."""
+    row = layout.row(align=True)
+    row.operator("panorama.look_around", icon="ORIENTATION_GIMBAL")
+    row.operator("panorama.look_at_plan", icon="VIEW_ORTHO")
 
 
 classes = (PANORAMA_MT_draw_shape,)

@@ -1,4 +1,4 @@
-"""Look Around: the eye where the panorama was captured, the direction and the lens as they were."""
+"""Look Around: the eye where the panorama was captured; direction and a chosen lens stay. Plan."""
 
 import pytest
 from room_job import calibrated
@@ -37,13 +37,34 @@ def test_the_eye_moves_and_nothing_else(in_view, tmp_path):
     origin.location.z = 1.75
     bpy.context.view_layer.update()
     view.view_perspective, view.view_rotation = "ORTHO", (0.5, 0.5, 0.5, 0.5)
-    lens, rotation = space.lens, view.view_rotation.copy()
+    space.lens, rotation = 35, view.view_rotation.copy()
     with override:
         assert bpy.ops.panorama.look_around() == {"FINISHED"}
     assert view.view_perspective == "PERSP"
-    assert (space.lens, view.view_rotation) == (lens, rotation)
+    assert (space.lens, view.view_rotation) == (35, rotation)
     eye = view.view_location + view.view_rotation @ Vector((0, 0, view.view_distance))
     assert tuple(eye) == pytest.approx((0, 0, 1.75), abs=2e-4)
+
+
+def test_a_lens_that_nobody_has_set_becomes_wide(in_view, tmp_path):
+    bpy, override, space = in_view
+    calibrated(bpy, tmp_path)
+    space.lens = 50
+    with override:
+        bpy.ops.panorama.look_around()
+    assert space.lens == 24
+
+
+def test_the_plan_is_seen_from_above_at_the_size_of_a_room(in_view, tmp_path):
+    bpy, override, space = in_view
+    calibrated(bpy, tmp_path)
+    view = space.region_3d
+    with override:
+        bpy.ops.panorama.look_around()
+        assert bpy.ops.panorama.look_at_plan() == {"FINISHED"}
+    assert view.view_perspective == "ORTHO"
+    assert tuple(view.view_rotation) == (1, 0, 0, 0)
+    assert 3 < view.view_distance < 20
 
 
 def test_before_calibration_the_eye_is_where_the_picture_is_shown_from(in_view):
