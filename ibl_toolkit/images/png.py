@@ -1,14 +1,19 @@
-"""Previews: 8-bit PNG files of HDR images."""
+"""8-bit PNG files of HDR images."""
 
+import struct
 from pathlib import Path
 
 import cv2
 import numpy as np
 
 from .atomic import replacing
+from .checking import refuse_more_than
+from .errors import ImageError
 
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)  # Rec. 709
 _MID_GREY = 0.18
+_START = b"\x89PNG\r\n\x1a\n"
+_END = b"IEND\xaeB`\x82"
 _ABOUT = 512  # rows that a median needs to be good enough
 
 
@@ -31,6 +36,34 @@ def write_png(path, image, *, exposure=1.0):
         file.tofile(temporary)
 
 
+def read_png(path, *, grey=False, max_bytes):
+    """The values of a PNG file as they are encoded, from 0 to 1: (H, W, 3) float32, or `grey` (H, W).
+
+    Transparency is left out, and so are colour profiles.
+
+    Raises: ImageError for what is no whole PNG file, or is larger than `max_bytes` as float32; OSError when
+    it cannot be opened.
+    """
+    file = Path(path).read_bytes()
+    if file[:8] != _START or len(file) < 24:
+        raise ImageError(f"{path}: not a PNG file: it starts with {file[:8]!r}")
+    width, height = struct.unpack(">2I", file[16:24])
+    refuse_more_than(max_bytes, 12 * width * height, f"{width} x {height} px", path)
+    # The decoder makes up what a truncated file lacks, and says so on the terminal only.
+    if not file.rstrip(b"\0").endswith(_END):
+        raise ImageError(f"{path}: truncated: it has no end")
+    mode = cv2.IMREAD_GRAYSCALE if grey else cv2.IMREAD_COLOR
+    try:
+        encoded = cv2.imdecode(np.frombuffer(file, np.uint8), mode | cv2.IMREAD_ANYDEPTH)
+    except cv2.error as error:  # a size beyond OpenCV's own limit
+        raise ImageError(f"{path}: cannot be decoded: {error.err}") from error
+    if encoded is None:
+        raise ImageError(f"{path}: cannot be decoded: its PNG data are damaged")
+    if not grey:
+        encoded = cv2.cvtColor(encoded, cv2.COLOR_BGR2RGB)
+    return encoded / np.float32(np.iinfo(encoded.dtype).max)
+
+
 def srgb_from_linear(linear):
     """sRGB values in [0, 1] of linear ones, which are clipped to [0, 1].
 
@@ -41,6 +74,15 @@ def srgb_from_linear(linear):
     """
     linear = np.clip(linear, 0, 1)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def linear_from_srgb(encoded):
+    """Linear values in [0, 1] of sRGB ones.
+
+    >>> linear_from_srgb(srgb_from_linear(np.array([0.0, 0.002, 0.18, 1.0]))).round(12)
+    array([0.   , 0.002, 0.18 , 1.   ])
+    """
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
 def exposure_for(image):

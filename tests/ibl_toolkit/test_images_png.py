@@ -1,11 +1,11 @@
-"""Previews: sRGB transfer, exposure, channel order."""
+"""8-bit PNG files: sRGB transfer, exposure, channel order; and back."""
 
 import cv2
 import numpy as np
 import pytest
 
-from expanded_panoramas.ibl_toolkit.images import exposure_for, write_png
-from expanded_panoramas.ibl_toolkit.images.png import srgb_from_linear
+from expanded_panoramas.ibl_toolkit.images import ImageError, exposure_for, write_png
+from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb, read_png, srgb_from_linear
 
 # IEC 61966-2-1: linear -> 8-bit code
 KNOWN = {0.0: 0, 0.0031308: 10, 0.18: 118, 0.5: 188, 1.0: 255, 7.0: 255, -1.0: 0}
@@ -56,3 +56,51 @@ def test_nan_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"a\.png: 1 values of the image are NaN"):
         write_png(tmp_path / "a.png", np.array([[np.nan, 1.0]]))
     assert not (tmp_path / "a.png").exists()
+
+
+MEMORY = 2**20
+
+
+def test_every_code_comes_back():
+    codes = np.arange(256, dtype=np.float32) / 255
+    np.testing.assert_array_equal(np.round(srgb_from_linear(linear_from_srgb(codes)) * 255), np.arange(256))
+
+
+def test_reading_what_was_written(tmp_path):
+    codes = np.random.default_rng(2).integers(0, 256, (4, 8, 3)).astype(np.float32)
+    write_png(tmp_path / "a.png", linear_from_srgb(codes / 255))
+    got = read_png(tmp_path / "a.png", max_bytes=MEMORY)
+    assert got.dtype == np.float32
+    np.testing.assert_allclose(got * 255, codes, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [
+        (np.full((2, 4), 255, np.uint8), (1, 1, 1)),
+        (np.full((2, 4, 4), (0, 51, 255, 7), np.uint8), (1, 0.2, 0)),  # B G R and transparency
+        (np.full((2, 4, 3), (0, 13107, 65535), np.uint16), (1, 0.2, 0)),
+    ],
+    ids=["grey", "transparent", "16 bit"],
+)
+def test_other_kinds_of_png(tmp_path, kind, expected):
+    cv2.imwrite(str(tmp_path / "a.png"), kind)
+    np.testing.assert_allclose(read_png(tmp_path / "a.png", max_bytes=MEMORY)[1, 3], expected, atol=1e-6)
+
+
+def test_damaged_png(tmp_path):
+    path = tmp_path / "a.png"
+    write_png(path, np.random.default_rng(2).uniform(size=(32, 64, 3)))
+    whole = path.read_bytes()
+    with pytest.raises(ImageError, match=r"a\.png: its header asks for .* GiB of memory \(64 x 32 px\)"):
+        read_png(path, max_bytes=12 * 64 * 32 - 1)
+    for start in (whole[:20], b"GIF89a" + whole):
+        path.write_bytes(start)
+        with pytest.raises(ImageError, match="not a PNG file"):
+            read_png(path, max_bytes=MEMORY)
+    path.write_bytes(whole[:-20])
+    with pytest.raises(ImageError, match="truncated"):
+        read_png(path, max_bytes=MEMORY)
+    path.write_bytes(whole[:16] + bytes(8) + whole[24:])  # a size of 0 x 0
+    with pytest.raises(ImageError, match="cannot be decoded"):
+        read_png(path, max_bytes=MEMORY)
