@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from expanded_panoramas.ibl_toolkit import cube_map, equirectangular
 from expanded_panoramas.ibl_toolkit.layers import atlas as atlas_module
 from expanded_panoramas.ibl_toolkit.layers.atlas import Atlas, Patch, atlas_of
 from expanded_panoramas.ibl_toolkit.layers.packing import pack_rectangles
@@ -104,6 +105,31 @@ def test_objects_of_three_percent_need_less_than_ten():
     mask = discs(1024, 512, 12, 20)
     assert 0.02 < mask.mean() < 0.05
     assert assert_lossless(mask, "equirectangular").share < 1.6 * mask.mean() < 0.1
+
+
+# Centre (x, y, z) and radius [m], seen from the origin: sofas and poufs about a room.
+BALLS = (
+    (1.2, 1.0, -0.9, 0.25),
+    (-1.4, 0.8, -0.85, 0.3),
+    (-1.3, -1.2, -0.8, 0.35),
+    (0.9, -1.5, -0.9, 0.25),
+    (1.7, -0.2, -0.75, 0.4),
+    (-0.2, 1.7, -0.6, 0.2),
+    (-1.8, 0.0, -0.7, 0.3),
+)
+
+
+@pytest.mark.parametrize(("mapping", "covered"), [("equirectangular", 0.0315), ("cube map", 0.0494)])
+def test_share_of_a_room_of_balls(mapping, covered):
+    """A ball of radius r at distance d shows where the angle to its centre is below asin(r / d)."""
+    equi = mapping == "equirectangular"
+    directions = equirectangular.pixel_directions(1024, 512) if equi else cube_map.pixel_directions(256)
+    mask = np.zeros(directions.shape[:2], bool)
+    for *centre, radius in BALLS:
+        distance = np.linalg.norm(centre)
+        mask |= directions @ (np.array(centre) / distance) > np.sqrt(1 - (radius / distance) ** 2)
+    assert mask.mean() == pytest.approx(covered, abs=1e-4)
+    assert assert_lossless(mask, mapping).share < 1.4 * covered
 
 
 def test_dust_gets_few_patches(monkeypatch):
