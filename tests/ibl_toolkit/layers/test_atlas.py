@@ -73,6 +73,13 @@ def test_a_part_over_the_seam_stays_whole():
     assert assert_lossless(mask, "equirectangular").patches == (Patch(60, 10, 0, 0, 9, 10),)
 
 
+def test_parts_between_the_seam_and_the_cut():
+    mask = np.zeros((32, 64), bool)
+    mask[10:20, 60:] = mask[10:20, :5] = mask[25:29, 2:4] = True
+    patches = assert_lossless(mask, "equirectangular").patches
+    assert sorted((p.u, p.v, p.w, p.h) for p in patches) == [(2, 25, 2, 4), (60, 10, 9, 10)]
+
+
 def test_a_band_round_the_sphere_is_one_patch():
     mask = np.zeros((32, 64), bool)
     mask[10:20] = True
