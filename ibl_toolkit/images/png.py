@@ -1,6 +1,7 @@
 """8-bit PNG files of HDR images."""
 
 import struct
+import zlib
 from pathlib import Path
 
 import cv2
@@ -13,7 +14,6 @@ from .errors import ImageError
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)  # Rec. 709
 _MID_GREY = 0.18
 _START = b"\x89PNG\r\n\x1a\n"
-_END = b"IEND\xaeB`\x82"
 _ABOUT = 512  # rows that a median needs to be good enough
 
 
@@ -49,9 +49,7 @@ def read_png(path, *, grey=False, max_bytes):
         raise ImageError(f"{path}: not a PNG file: it starts with {file[:8]!r}")
     width, height = struct.unpack(">2I", file[16:24])
     refuse_more_than(max_bytes, 12 * width * height, f"{width} x {height} px", path)
-    # The decoder makes up what a truncated file lacks, and says so on the terminal only.
-    if not file.rstrip(b"\0").endswith(_END):
-        raise ImageError(f"{path}: truncated: it has no end")
+    _refuse_damaged_chunks(file, path)
     mode = cv2.IMREAD_GRAYSCALE if grey else cv2.IMREAD_COLOR
     try:
         encoded = cv2.imdecode(np.frombuffer(file, np.uint8), mode | cv2.IMREAD_ANYDEPTH)
@@ -74,6 +72,24 @@ def srgb_from_linear(linear):
     """
     linear = np.clip(linear, 0, 1)
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def _refuse_damaged_chunks(file, path):
+    """The decoder makes up what a truncated file lacks, and takes the memory that a chunk's length asks for.
+
+    Source: ISO/IEC 15948, section 5.3: a length, a name, the data, and a check of name and data.
+    """
+    at, name = len(_START), b""
+    while name != b"IEND":
+        if at + 12 > len(file):
+            raise ImageError(f"{path}: truncated: {len(file)} bytes, without an end")
+        length, name = struct.unpack(">I4s", file[at : at + 8])
+        end = at + 12 + length
+        if end > len(file):
+            raise ImageError(f"{path}: truncated or damaged: {len(file)} bytes, must be {end} or more")
+        if zlib.crc32(file[at + 4 : end - 4]) != struct.unpack(">I", file[end - 4 : end])[0]:
+            raise ImageError(f"{path}: damaged: the check of its chunk at byte {at} fails")
+        at = end
 
 
 def linear_from_srgb(encoded):

@@ -1,5 +1,8 @@
 """8-bit PNG files: sRGB transfer, exposure, channel order; and back."""
 
+import struct
+import zlib
+
 import cv2
 import numpy as np
 import pytest
@@ -98,9 +101,20 @@ def test_damaged_png(tmp_path):
         path.write_bytes(start)
         with pytest.raises(ImageError, match="not a PNG file"):
             read_png(path, max_bytes=MEMORY)
-    path.write_bytes(whole[:-20])
-    with pytest.raises(ImageError, match="truncated"):
-        read_png(path, max_bytes=MEMORY)
-    path.write_bytes(whole[:16] + bytes(8) + whole[24:])  # a size of 0 x 0
-    with pytest.raises(ImageError, match="cannot be decoded"):
-        read_png(path, max_bytes=MEMORY)
+    for spoiled, message in (
+        (whole[:-20], r"truncated or damaged: \d+ bytes, must be \d+ or more"),
+        (whole[:-12], "truncated: .* without an end"),
+        (whole[:8] + b"\x7f" + whole[9:], "truncated or damaged"),  # a chunk of 2 GiB
+        (whole[:100] + bytes([whole[100] ^ 1]) + whole[101:], "damaged: the check of its chunk at byte"),
+        (with_size(whole, 0, 0), "cannot be decoded"),
+        (with_size(whole, 64, 99), "cannot be decoded"),
+    ):
+        path.write_bytes(spoiled)
+        with pytest.raises(ImageError, match=rf"a\.png: {message}"):
+            read_png(path, max_bytes=MEMORY)
+
+
+def with_size(file, width, height):
+    """A PNG file whose header says another size."""
+    header = b"IHDR" + struct.pack(">2I", width, height) + file[24:29]
+    return file[:12] + header + struct.pack(">I", zlib.crc32(header)) + file[33:]
