@@ -15,10 +15,12 @@ from . import equirectangular
 from .equirectangular import pixel_from_uv, uv_from_pixel  # the same formula for any layout
 
 __all__ = [
+    "border_texels",
     "direction_from_uv",
     "from_equirectangular",
     "pixel_directions",
     "pixel_from_uv",
+    "point_on_face",
     "sample",
     "solid_angles",
     "to_equirectangular",
@@ -139,8 +141,19 @@ def to_equirectangular(cube, width, height):
     return sample(cube, equirectangular.pixel_directions(width, height))
 
 
+def point_on_face(face, s, t):
+    """Points (..., 3) on the cube from -1 to 1, of places s to the right and t down, both (...) from -1 to 1.
+
+    face: (...) numbers of the faces in the order +x +y +z -x -y -z. Source: eq. A.29-A.34.
+
+    >>> point_on_face(np.array([1]), np.array([0.5]), np.array([1.0]))
+    array([[ 0.5,  1. , -1. ]])
+    """
+    return _FORWARD[face] + s[..., None] * _RIGHT[face] + t[..., None] * _DOWN[face]
+
+
 def _direction_from_face(face, s, t):
-    direction = _FORWARD[face] + s[..., None] * _RIGHT[face] + t[..., None] * _DOWN[face]
+    direction = point_on_face(face, s, t)
     return direction / np.linalg.norm(direction, axis=-1, keepdims=True)
 
 
@@ -173,7 +186,7 @@ def _padded_faces(cube):
     faces = faces.astype(np.result_type(cube.dtype, np.float32), copy=False)
     padded = np.empty((6, n + 2, n + 2, *cube.shape[2:]), dtype=faces.dtype)
     padded[:, 1:-1, 1:-1] = faces
-    neighbour, j, i = _border_texels(n)
+    neighbour, j, i = border_texels(n)
     side = slice(1, n + 1)
     for k, place in enumerate(((0, side), (n + 1, side), (side, 0), (side, n + 1))):
         padded[(slice(None), *place)] = faces[neighbour[:, k], j[:, k], i[:, k]]
@@ -185,8 +198,13 @@ def _padded_faces(cube):
 
 
 @lru_cache(maxsize=8)
-def _border_texels(face_size):
-    """Face, row and column, each (6, 4, N), of the texels beyond the top, bottom, left and right edges."""
+def border_texels(face_size):
+    """Face, row and column, each (6, 4, N), of the texels beyond the top, bottom, left and right edges.
+
+    >>> face, row, column = border_texels(2)
+    >>> face[0, 0].tolist(), row[0, 0].tolist(), column[0, 0].tolist()
+    ([2, 2], [0, 1], [0, 0])
+    """
     centres = (2 * np.arange(face_size) + 1) / face_size - 1
     beyond = np.full(face_size, 1 + 1e-3 / face_size)  # so little that it stays beside the same texel
     edges_s = np.stack([centres, centres, -beyond, beyond])
