@@ -73,48 +73,59 @@ def _difference(normals, inside, here, there):
 
 
 def _block_normals(corners, sheet, block, depth, inside):
-    rows = np.arange(block.start, block.stop)
-    columns = np.arange(inside.shape[1])
+    """Normals (rows, columns, 3) of a block of rows; in planes, which numpy handles fastest."""
+    rows, columns = np.arange(block.start, block.stop), np.arange(inside.shape[1])
     directions = _directions(corners, sheet, rows, columns)
-    points = directions * np.where(inside, depth, 0.0)[..., None]
-    across = np.zeros_like(points)
-    for side in (1, -1):
-        if corners.wraps:
-            elevation = (0.5 - (rows + 0.5) / corners.height) * np.pi
-            step = np.minimum(np.rint(1 / np.cos(elevation)).astype(np.int64), len(columns) // 4)
-            there = (columns + side * step[:, None]) % len(columns)
-        else:
-            there = np.broadcast_to(np.clip(columns + side, 0, len(columns) - 1), inside.shape)
-        row = np.arange(len(rows))[:, None]
-        known = inside[row, there][..., None]
-        across += side * np.where(known, points[row, there], points)
-    down = np.zeros_like(points)
-    down[:-1] += np.where(inside[1:, :, None], points[1:], points[:-1])
-    down[1:] -= np.where(inside[:-1, :, None], points[:-1], points[1:])
-    down[-1] += points[-1]
-    down[0] -= points[0]
-    normals = _cross(down, across)
-    length = np.sqrt(np.einsum("...k,...k", normals, normals))[..., None]
-    normals = np.divide(normals, length, out=-directions, where=length > 0)
-    normals[~inside] = 0
-    return normals
+    distance = np.where(inside, depth, 0.0)
+    points = [direction * distance for direction in directions]
+    right, left = (_beside(corners, inside, rows, columns, side) for side in (1, -1))
+    below, above = _next_row(inside, 1), _next_row(inside, -1)
+    across = [p.take(right) - p.take(left) for p in points]
+    down = [p.take(below) - p.take(above) for p in points]
+    normals = [down[i] * across[j] - down[j] * across[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+    length = np.sqrt(sum(n * n for n in normals))
+    result = np.empty((*inside.shape, 3), dtype=np.float32)
+    for axis, (normal, direction) in enumerate(zip(normals, directions, strict=True)):
+        result[..., axis] = np.divide(normal, length, out=-direction * np.ones_like(length), where=length > 0)
+    result[~inside] = 0
+    return result
+
+
+def _beside(corners, inside, rows, columns, side):
+    """Flat indices of the neighbours to the right (1) or left (-1), or of the pixel itself."""
+    if corners.wraps:
+        elevation = (0.5 - (rows + 0.5) / corners.height) * np.pi
+        step = np.minimum(np.rint(1 / np.cos(elevation)).astype(np.int64), len(columns) // 4)
+        there = (columns + side * step[:, None]) % len(columns)
+    else:
+        there = np.broadcast_to(np.clip(columns + side, 0, len(columns) - 1), inside.shape)
+    return _or_itself(np.arange(len(rows))[:, None] * len(columns) + there, inside)
+
+
+def _next_row(inside, side):
+    """Flat indices of the pixels of the domain one row further, or of the pixel itself."""
+    rows, columns = inside.shape
+    there = np.clip(np.arange(rows) + side, 0, rows - 1)[:, None] * columns + np.arange(columns)
+    return _or_itself(there, inside)
+
+
+def _or_itself(there, inside):
+    known = inside.take(there)
+    if known.all():
+        return there
+    return np.where(known, there, np.arange(inside.size).reshape(inside.shape))
 
 
 def _directions(corners, sheet, rows, columns):
+    """x, y and z of the directions of a block's pixels, each of a shape that broadcasts to it."""
     if corners.mapping == CUBE_MAP:
         size = len(columns)
         s, t = np.meshgrid(2 * (columns + 0.5) / size - 1, 2 * (rows + 0.5) / size - 1)
-        points = cube_map.point_on_face(np.array(sheet), s, t)
-        return points / np.linalg.norm(points, axis=-1, keepdims=True)
-    ij = np.stack(np.meshgrid(columns, rows), axis=-1)
-    uv = equirectangular.uv_from_pixel(ij, corners.width, corners.height)
-    return equirectangular.direction_from_uv(uv)
-
-
-def _cross(a, b):
-    """Cross product of (..., 3), faster than numpy's."""
-    result = np.empty_like(a)
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        result[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
-    return result
+        points = np.moveaxis(cube_map.point_on_face(np.array(sheet), s, t), -1, 0)
+        return points / np.sqrt(1 + s * s + t * t)
+    u = (columns + 0.5) / corners.width
+    v = (rows + 0.5) / corners.height
+    level = equirectangular.direction_from_uv(np.stack([u, np.full_like(u, 0.5)], axis=1))
+    upright = equirectangular.direction_from_uv(np.stack([np.full_like(v, 0.5), v], axis=1))
+    horizontal = upright[:, :1]
+    return horizontal * level[:, 0], horizontal * level[:, 1], upright[:, 2:]
