@@ -49,6 +49,16 @@ class Corners:
             .reshape(sheets, rows, columns, *image.shape[2:])
         )
 
+    @property
+    def rims(self):
+        """Pairs of indices into sheets: pixels along a rim of a sheet, and their neighbours beyond it."""
+        if self.wraps:
+            first, last = np.s_[:, :, 0], np.s_[:, :, -1]
+            return [(first, last), (last, first)]
+        beyond = cube_map.border_texels(self.sheet_shape[1])
+        rims = (np.s_[:, 0, :], np.s_[:, -1, :], np.s_[:, :, 0], np.s_[:, :, -1])
+        return [(rim, tuple(axis[:, k] for axis in beyond)) for k, rim in enumerate(rims)]
+
     @cached_property
     def duplicates(self):
         """Numbers (n,) of corners that are known by another number, and those numbers (n,)."""

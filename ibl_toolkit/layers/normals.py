@@ -37,7 +37,7 @@ def normals_from_depth(corners, depth, inside):
 def normal_variation(corners, normals, inside):
     """V_N (sheets, rows, columns), float32: how much a normal differs from those to the left and above.
 
-    Along the rims of a cube's faces it is compared with those of the other faces, too.
+    Along the rims of a sheet it is compared with those beyond the rim, too.
 
     The root of the sum of squares of 1 - <n, n'> (eq. 7.12-7.15); a neighbour outside of the domain does
     not count. Eq. 7.12-7.13 have the absolute value of the dot product, for which the two sides of a fold
@@ -45,21 +45,11 @@ def normal_variation(corners, normals, inside):
     """
     across, down = np.zeros(inside.shape, np.float32), np.zeros(inside.shape, np.float32)
     across[:, :, 1:] = _difference(normals, inside, np.s_[:, :, 1:], np.s_[:, :, :-1])
-    if corners.wraps:
-        across[:, :, :1] = _difference(normals, inside, np.s_[:, :, :1], np.s_[:, :, -1:])
     down[:, 1:] = _difference(normals, inside, np.s_[:, 1:, :], np.s_[:, :-1, :])
     variation = np.hypot(across, down, out=across)
-    if corners.mapping == CUBE_MAP:
-        _add_other_faces(variation, normals, inside)
+    for rim, beyond in corners.rims:
+        variation[rim] = np.hypot(variation[rim], _difference(normals, inside, rim, beyond))
     return variation
-
-
-def _add_other_faces(variation, normals, inside):
-    there = cube_map.border_texels(inside.shape[1])
-    rims = (np.s_[:, 0, :], np.s_[:, -1, :], np.s_[:, :, 0], np.s_[:, :, -1])
-    for side, here in enumerate(rims):
-        beyond = tuple(axis[:, side] for axis in there)
-        variation[here] = np.hypot(variation[here], _difference(normals, inside, here, beyond))
 
 
 def _difference(normals, inside, here, there):

@@ -52,7 +52,7 @@ def layer_quadtree(corners, depth, inside, subdivision):
     variation = normal_variation(corners, normals_from_depth(corners, depth, inside), inside)
     features, residual = features_and_residual(variation, subdivision.feature_deg)
     domain_table = summed_area_table(inside)
-    whole = summed_area_table(features | border(inside))
+    whole = summed_area_table(features | border(corners, inside))
     residual_table = summed_area_table(residual)
     largest = subdivision.largest_cell or max(1, inside.shape[2] // (16 if corners.wraps else 4))
     if corners.wraps:
@@ -73,9 +73,15 @@ def layer_quadtree(corners, depth, inside, subdivision):
     return without_strips(balanced(tree, inside, corners.wraps))
 
 
-def border(inside):
-    """B: pixels of the domain with one of their eight neighbours in the sheet outside of it (eq. 7.8)."""
-    return np.stack([sheet & (_eroded(sheet) == 0) for sheet in inside])
+def border(corners, inside):
+    """B: pixels of the domain that have one of their eight neighbours outside of it (eq. 7.8).
+
+    Beyond the rim of a sheet it is the one neighbour across it that counts.
+    """
+    found = np.stack([sheet & (_eroded(sheet) == 0) for sheet in inside])
+    for rim, beyond in corners.rims:
+        found[rim] |= inside[rim] & ~inside[beyond]
+    return found
 
 
 def features_and_residual(variation, feature_deg):

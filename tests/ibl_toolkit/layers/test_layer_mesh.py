@@ -37,6 +37,8 @@ def some_domain(mapping, width):
     inside = ways @ np.array([-0.9, 0.1, 0.3]) > 0.8
     inside &= ways @ np.array([-0.9, 0.1, 0.3]) < 0.93
     inside |= ways[..., 2] < -0.9
+    if mapping == "cube map":
+        inside[: len(inside) // 4, : len(inside) // 4] = True  # a quarter of a face, on two of its rims
     row, column = inside.shape[0] // 3, inside.shape[1] // 2
     inside[row, column] = True
     inside[row + 3, column] = inside[row + 4, column + 1] = True

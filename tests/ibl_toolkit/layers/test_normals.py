@@ -69,18 +69,21 @@ def test_a_fold_is_a_feature():
     normals[:, :, :3, 0], normals[:, :, 3:, 0] = 1, -1
     inside = np.ones((1, 2, 6), bool)
     variation = normal_variation(Corners("equirectangular", 6, 3), normals, inside)
-    assert variation[0, 0].tolist() == [2, 0, 0, 2, 0, 0]  # at the fold, and where the seam folds back
+    assert variation[0, 0].tolist() == [2, 0, 0, 2, 0, 2]  # at the fold, and where the seam folds back
     inside[:, :, 2] = False
     assert normal_variation(Corners("equirectangular", 6, 3), normals, inside)[0, 0, 3] == 0
 
 
 def test_the_border_is_inside_the_domain():
-    inside = np.ones((1, 5, 6), bool)
+    inside = np.ones((1, 5, 10), bool)
     inside[0, 2, 3] = False
-    expected = np.zeros((5, 6), bool)
+    expected = np.zeros((5, 10), bool)
     expected[1:4, 2:5] = True
     expected[2, 3] = False
-    assert np.array_equal(border(inside)[0], expected)  # the sheet's own rim is none
+    corners = Corners("equirectangular", 10, 5)
+    assert np.array_equal(border(corners, inside)[0], expected)  # the sheet's own rim is none
+    inside[0, 1, 0] = False
+    assert border(corners, inside)[0, 1].tolist() == [k in (1, 2, 3, 4, 9) for k in range(10)]
 
 
 @pytest.mark.parametrize(
