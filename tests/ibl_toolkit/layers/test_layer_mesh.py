@@ -214,3 +214,20 @@ def test_cells_are_no_larger_than_asked():
     assert (leaves.x1 - leaves.x0).max() == 2
     leaves = quadtree_of(layer, Subdivision(largest_cell=100)).leaves()
     assert (leaves.x1 - leaves.x0).max() > 2
+
+
+@pytest.mark.parametrize("mapping", BOTH)
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 1.0])
+def test_domains_and_depths_at_random(mapping, share):
+    """Sizes of any kind, pixels at infinity, noise: nothing but the domain's rim has one triangle."""
+    random = np.random.default_rng(int(10 * share))
+    for width in random.integers(3, 30, 6) * {"equirectangular": 2, "cube map": 3}[mapping]:
+        depth = box_depth(mapping, width)
+        depth = (depth * np.exp(random.normal(0, 0.3, depth.shape))).astype(np.float32)
+        depth[random.random(depth.shape) < 0.05] = np.inf
+        layer = layer_of(mapping, depth, random.random(depth.shape) < share)
+        smooth = Subdivision(feature_deg=180, turn_deg=180)
+        for mesh in (uniform_mesh(layer), adaptive_mesh(layer), adaptive_mesh(layer, smooth)):
+            inside = mesh.corners.as_sheets(layer.mask & np.isfinite(depth))
+            assert sorted(map(tuple, rim(mesh))) == sorted(map(tuple, rim_of_pixels(mesh.corners, inside)))
+            assert np.isfinite(mesh.points).all()
