@@ -4,10 +4,10 @@ Worked out on a small gnomonic patch around the click, in which straight lines o
 that neither the seam nor the poles of the image are special; brightness counts relative to the patch, so that
 the exposure does not matter.
 
-Accuracy, rms in rows of the image, of synthetic corners blurred by 0.7 rows: where four fields meet 0.01, with
-5 % noise 0.07; a single bright field's corner 0.13 towards its inside (blur rounds it), with 5 % noise 0.17.
-With 10 % noise, or blurred by 2 rows, up to 0.8 off, or not found. Edges alone are not taken for a corner,
-noise alone is in 4 of 100 clicks (`tests/benchmarks/corner_snap.py`).
+Accuracy, rms in rows of the image, of synthetic corners blurred by 0.7 rows: where four fields meet 0.01,
+with 5 % noise 0.07; a single bright field's corner 0.13 towards its inside (blur rounds it), with 5 % noise
+0.17. With 10 % noise, or blurred by 2 rows, up to 0.8 off, or not found. Edges alone are not taken for a
+corner, noise alone is in 4 of 100 clicks (`tests/benchmarks/corner_snap.py`).
 """
 
 from dataclasses import dataclass

@@ -217,7 +217,7 @@ def stop():
 def _draw_status(header, context):
     if _running is not None:
         row = header.layout.row()  # the button first: what follows changes its width
-        row.operator(PANORAMA_OT_cancel_work.bl_idname, text="Cancel", icon="EVENT_ESC")
+        row.operator(PANORAMA_OT_cancel_work.bl_idname, text="Cancel (Esc)", icon="X")
         row.label(text=_running.text())
 
 

@@ -81,7 +81,7 @@ def _draw_labels(texts):
         low = pixels + BESIDE / 2 * drawing.scale()
         high = low + np.array([LETTER[0] * len(string), LETTER[1]]) * drawing.scale()
         if not any((low < other_high).all() and (other_low < high).all() for other_low, other_high in taken):
-            drawing.text(low, string)
+            drawing.text(low, string, backed=True)
             taken.append((low, high))
 
 
