@@ -20,5 +20,3 @@ def unregister():
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
     painting.forget_scene_layer()
     shader.free()
-    for image in filter(None, map(painting.image_of, bpy.data.scenes)):
-        image.gl_free()

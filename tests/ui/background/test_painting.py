@@ -143,14 +143,3 @@ def test_nothing_stays_behind(fresh_blend):
     expanded_panoramas.register()
     assert left == (0, False, None)
     assert in_header == drawn - 1
-
-
-def test_the_panoramas_texture_goes_with_the_add_on(fresh_blend, monkeypatch):
-    from expanded_panoramas.ui import background
-
-    freed = []
-    image = SimpleNamespace(gl_free=lambda: freed.append(True))
-    monkeypatch.setattr(background.painting, "image_of", lambda scene: image)
-    background.unregister()
-    background.register()
-    assert freed == [True] * len(fresh_blend.data.scenes)
