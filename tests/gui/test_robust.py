@@ -18,5 +18,6 @@ def test_switched_off_it_leaves_nothing(notes):
     found = notes["switched_off_and_on"]
     assert found["during"]["callbacks"] > 0
     assert found["during"]["handlers"] > 0
+    assert found["during"]["panorama"]
     assert set(found["left"].values()) == {0}, found["left"]
     assert found["solved_again"]

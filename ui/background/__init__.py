@@ -19,4 +19,5 @@ def unregister():
     while _handles:
         bpy.types.SpaceView3D.draw_handler_remove(_handles.pop(), "WINDOW")
     painting.forget_scene_layer()
+    painting.free_textures()
     shader.free()

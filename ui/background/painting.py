@@ -28,6 +28,7 @@ EMPTY, FILLED, ANYWHERE = "LESS_EQUAL", "GREATER", "NONE"
 ROUNDING = 0.005
 """Beyond the rounding to 8 bits, and the noise, that Blender's overlays add to the theme's colour."""
 _scene_layer = None
+_textured = set()  # session uids of the images that were drawn: Blender made textures of them
 
 
 def remember_scene_layer():
@@ -47,6 +48,7 @@ def paint():
     if view.runs_along_floor:  # the theme's colour is better then
         return
     texture = gpu.texture.from_image(image)
+    _textured.add(image.session_uid)
     gain = 2.0**context.scene.panorama_view.exposure
     fill = _fill_of(context)
     shown = passes(context.space_data.shading, context.scene.panorama_view.opacity, covers_meshes(view))
@@ -65,6 +67,15 @@ def forget_scene_layer() -> gpu.types.GPUFrameBuffer | None:
     global _scene_layer
     layer, _scene_layer = _scene_layer, None
     return layer
+
+
+def free_textures():
+    """Take the textures of the panoramas drawn off the graphics card. Blender frees its own by a time-out."""
+    if _textured:
+        for image in bpy.data.images:
+            if image.session_uid in _textured:
+                image.gl_free()
+    _textured.clear()
 
 
 def image_of(scene) -> bpy.types.Image | None:

@@ -60,11 +60,12 @@ def switched_off_and_on(stage):
     yield from look.open_sidebar(stage.hand, view)
     for _ in range(10):
         yield
-    stage.note(during=watch.left())
+    image = bpy.context.scene.panorama_set.image.name
+    stage.note(during=watch.left() | {"panorama": watch.has_texture_of(bpy.data.images[image])})
     addon_utils.disable(name)
     for _ in range(5):
         yield
-    stage.note(left=watch.left())
+    stage.note(left=watch.left() | {"panorama": watch.has_texture_of(bpy.data.images[image])})
     watch.end()
     addon_utils.enable(name)
     yield

@@ -32,6 +32,12 @@ class Watch:
             "textures": sum(sys.getrefcount(texture) > 3 for texture in self.textures),
         }
 
+    def has_texture_of(self, image):
+        """Whether an image still has the texture that was made of it: else this makes another."""
+        before = len(self.textures)
+        gpu.texture.from_image(image)
+        return len(self.textures) == before
+
     def end(self):
         """Give Blender its functions back."""
         for owner, name, function in self._undone:

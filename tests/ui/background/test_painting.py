@@ -143,3 +143,15 @@ def test_nothing_stays_behind(fresh_blend):
     expanded_panoramas.register()
     assert left == (0, False, None)
     assert in_header == drawn - 1
+
+
+def test_only_textures_of_what_was_drawn_are_freed(monkeypatch):
+    from expanded_panoramas.ui.background import painting
+
+    freed = []
+    images = [SimpleNamespace(session_uid=uid, gl_free=lambda uid=uid: freed.append(uid)) for uid in (1, 2)]
+    monkeypatch.setattr(painting, "bpy", SimpleNamespace(data=SimpleNamespace(images=images)))
+    monkeypatch.setattr(painting, "_textured", {2, 3})
+    painting.free_textures()
+    painting.free_textures()
+    assert freed == [2]
