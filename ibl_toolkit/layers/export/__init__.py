@@ -1,0 +1,1 @@
+"""Layers as textured meshes for other programs: glTF 2.0, OBJ, PLY."""

@@ -1,0 +1,99 @@
+"""The picture of a layer as a texture: 8-bit sRGB, gone on with beyond the domain's edge.
+
+A texture is looked up between texels, and in mip levels: what lies outside of the domain shows at its edge.
+So the colours of the domain's pixels are spread over those outside. The faces of a cube map each get a border
+from their neighbours, for on the image they lie beside faces that are none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+
+from ...images.png import srgb_from_linear
+from ..panorama import CUBE_MAP, Layer
+from ..rendered_view import sampled
+from .texture_coordinates import CubeChart, EquirectangularChart, chart_of
+
+BORDER = 4
+"""[px] round the faces of a cube map, so that the first two mip levels don't mix them."""
+_SPREAD = 16  # [px] beyond the domain
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """pixels: (h, w, 4) uint8, sRGB and the domain as alpha, top row first. chart: where corners lie on
+    it."""
+
+    name: str
+    pixels: np.ndarray
+    chart: EquirectangularChart | CubeChart
+    _files: dict[bool, bytes] = field(default_factory=dict, init=False, repr=False)
+
+    def png(self, with_alpha: bool) -> bytes:
+        """The file, made once; without alpha unless a mesh needs it."""
+        if with_alpha not in self._files:
+            code = cv2.COLOR_RGBA2BGRA if with_alpha else cv2.COLOR_RGBA2BGR
+            self._files[with_alpha] = cv2.imencode(".png", cv2.cvtColor(self.pixels, code))[1].tobytes()
+        return self._files[with_alpha]
+
+
+def texture_of(layer: Layer, exposure: float) -> Texture:
+    """The layer's radiance times `exposure`, clipped to 0 to 1 and encoded as sRGB.
+
+    Raises: ValueError for a layer without radiance, or with one that is NaN or infinite in its domain.
+    """
+    if layer.radiance is None:
+        raise ValueError(f"{layer} has no radiance, so there is nothing to show on its surface")
+    inside = layer.mask
+    if not np.isfinite(layer.radiance[inside]).all():
+        raise ValueError(f"{layer} has radiance that is NaN or infinite in its domain")
+    linear = spread(layer.radiance, inside, layer.mapping)
+    alpha = inside.astype(np.float32)
+    chart = chart_of(layer.mapping, layer.size[0], BORDER)
+    if layer.mapping == CUBE_MAP:
+        directions = chart.texel_directions()
+        linear, alpha = sampled(layer, linear, directions), sampled(layer, alpha, directions)
+    pixels = np.empty((*alpha.shape, 4), dtype=np.uint8)
+    pixels[..., :3] = encoded(linear, exposure)
+    pixels[..., 3] = np.round(alpha * 255)
+    return Texture(layer.name, pixels, chart)
+
+
+def encoded(linear: np.ndarray, exposure: float) -> np.ndarray:
+    """8-bit sRGB (..., 3) of linear radiance times `exposure`."""
+    return np.round(srgb_from_linear(linear * np.float32(exposure)) * 255).astype(np.uint8)
+
+
+def spread(values: np.ndarray, inside: np.ndarray, mapping: str) -> np.ndarray:
+    """The values (H, W, 3) of a map, outside of its domain those of the nearest pixel inside; float32.
+
+    Farther than 16 px from the domain they are 0. On a cube map each face is spread for itself.
+    """
+    if inside.all():
+        return values.astype(np.float32)
+    found = np.zeros(values.shape, dtype=np.float32)
+    if mapping == CUBE_MAP:
+        size = len(inside) // 2
+        for place in range(6):
+            row, column = place // 3 * size, place % 3 * size
+            face = np.s_[row : row + size, column : column + size]
+            found[face] = _spread(values[face], inside[face])
+        return found
+    around = min(_SPREAD, inside.shape[1])
+    wrapped = [np.pad(a, ((0, 0), (around, around), (0, 0))[: a.ndim], mode="wrap") for a in (values, inside)]
+    return _spread(*wrapped)[:, around:-around]
+
+
+def _spread(values, inside):
+    if not inside.any():
+        return np.zeros(values.shape, dtype=np.float32)
+    distance, labels = cv2.distanceTransformWithLabels(
+        (~inside).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    nearest = np.zeros(labels.max() + 1, dtype=np.int64)
+    nearest[labels[inside]] = np.flatnonzero(inside)
+    spread = values.reshape(-1, values.shape[-1])[nearest[labels]]
+    return np.where((distance <= _SPREAD)[..., None], spread, 0).astype(np.float32)

@@ -1,0 +1,119 @@
+"""A layered panorama as a file of another program: which format, which surface, and how large it became."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...images import exposure_for
+from ..panorama import LayeredPanorama
+from .gltf import write_glb
+from .obj import write_obj
+from .pieces import MESHES, TEXTURE_ERROR_PX, pieces_of
+from .ply import bytes_of, points_of_piece, points_of_pixels, write_ply
+
+POINTS = "points"
+SURFACES = (*MESHES, POINTS)
+FORMATS = (".glb", ".obj", ".ply")
+_ROWS = 512
+
+
+@dataclass(frozen=True)
+class ExportedLayer:
+    """bytes: of its geometry and, where it has one of its own, its texture, as they are stored."""
+
+    name: str
+    vertices: int
+    triangles: int
+    bytes: int
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written: the layers, the factor that radiance was multiplied with, the files."""
+
+    layers: tuple[ExportedLayer, ...]
+    exposure: float
+    files: tuple[Path, ...]
+
+
+def export_layers(
+    panorama: LayeredPanorama,
+    path,
+    *,
+    surface: str | None = None,
+    exposure: float | None = None,
+    far: float | None = None,
+    texture_error_px: float = TEXTURE_ERROR_PX,
+) -> Exported:
+    """Write the layers as `path`: .glb, .obj (with .mtl and textures beside it), or .ply.
+
+    surface: of SURFACES; if None, "quadtree", in a .ply file, whose colours are those of vertices, "points".
+    exposure: what radiance is multiplied with before it is clipped to 8 bits; if None, so that the median of
+    all layers becomes mid grey. far: radius [m] of the sphere that stands for infinity, see
+    `pieces.far_radius`. texture_error_px: by how many pixels a texture may be off in the middle of a
+    triangle's side.
+
+    Raises: ValueError for another suffix or surface, points in a file that isn't .ply, an exposure that is
+    not finite and above 0, and what `pieces_of` refuses; OSError.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    surface = surface or (POINTS if suffix == ".ply" else next(iter(MESHES)))
+    _refuse_other(path, suffix, surface, exposure)
+    exposure = exposure or exposure_of(panorama)
+    if surface == POINTS:
+        return _write_ply(path, panorama, points_of_pixels(panorama, exposure, far), exposure)
+    pieces = pieces_of(panorama, exposure, MESHES[surface], far, texture_error_px)
+    if suffix == ".ply":
+        return _write_ply(path, panorama, [points_of_piece(piece) for piece in pieces], exposure)
+    if suffix == ".obj":
+        files, sizes = write_obj(path, panorama, pieces)
+    else:
+        write_glb(path, panorama, pieces, exposure)
+        files = [path]
+        sizes = [piece.points.nbytes + piece.uv.nbytes + piece.triangles.nbytes for piece in pieces]
+    return Exported(tuple(map(_textured, pieces, sizes, _first_uses(pieces))), exposure, tuple(files))
+
+
+def exposure_of(panorama: LayeredPanorama) -> float:
+    """The factor that brings the median luminance of all layers' domains to mid grey."""
+    shown = [np.zeros((0, 3), np.float32)]
+    for layer in panorama.layers:
+        if layer.radiance is not None:
+            some = (slice(None, None, max(1, layer.size[1] // _ROWS)),) * 2  # a median needs no more
+            shown.append(layer.radiance[some][layer.mask[some]])
+    return exposure_for(np.concatenate(shown)[None])
+
+
+def _write_ply(path, panorama, parts, exposure):
+    write_ply(path, panorama, parts)
+    sizes = [(len(part.points), len(part.triangles)) for part in parts]
+    layers = [
+        ExportedLayer(part.name, *size, bytes_of(*size)) for part, size in zip(parts, sizes, strict=True)
+    ]
+    return Exported(tuple(layers), exposure, (path,))
+
+
+def _textured(piece, size, has_texture):
+    texture = len(piece.texture.png(piece.masked)) if has_texture else 0
+    return ExportedLayer(piece.name, len(piece.points), len(piece.triangles), size + texture)
+
+
+def _first_uses(pieces):
+    """Whether each piece is the first with its texture, and so the one that it counts with."""
+    keys = [(id(piece.texture), piece.masked) for piece in pieces]
+    return [keys.index(key) == number for number, key in enumerate(keys)]
+
+
+def _refuse_other(path, suffix, surface, exposure):
+    if suffix not in FORMATS:
+        raise ValueError(f"{path}: must end in {', '.join(FORMATS)}")
+    if surface not in SURFACES:
+        raise ValueError(f"surface '{surface}' must be one of {', '.join(SURFACES)}")
+    if surface == POINTS and suffix != ".ply":
+        raise ValueError(f"{path}: points can be written as .ply only, not as {suffix}")
+    if exposure is not None and not 0 < exposure < np.inf:
+        raise ValueError(f"exposure {exposure} must be finite and above 0")

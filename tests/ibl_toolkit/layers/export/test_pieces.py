@@ -1,0 +1,164 @@
+"""Textured meshes of layers: coordinates over seam, poles and cube edges; cut until the texture fits."""
+
+import numpy as np
+import pytest
+from box_layers import BOTH, HALF, is_closed
+from layered_box import layered_box, radiance_in
+
+from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb
+from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, far_radius, pieces_of
+from expanded_panoramas.ibl_toolkit.layers.export.ply import points_of_piece
+from expanded_panoramas.ibl_toolkit.layers.export.texture_coordinates import CubeChart, EquirectangularChart
+from expanded_panoramas.ibl_toolkit.layers.layer_mesh import LayerMesh
+from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
+
+ERROR_PX = 0.5
+INSIDE_PX = 2 * ERROR_PX  # the middles of sides are held to ERROR_PX; within a triangle all three add up
+WITHIN = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 0], [0, 3, 3], [3, 0, 3]])
+WITHIN = WITHIN / WITHIN.sum(axis=1, keepdims=True)
+
+
+def texture_errors(piece):
+    """By how many pixels the texture is off within triangles (T, P)."""
+    shown = piece.texture.chart.direction(np.einsum("pc,tck->tpk", WITHIN, piece.uv[piece.triangles]))
+    points = np.einsum("pc,tck->tpk", WITHIN, piece.points[piece.triangles].astype(float))
+    right = points / np.linalg.norm(points, axis=2, keepdims=True)
+    return np.linalg.norm(shown - right, axis=2) * piece.texture.chart.pixels_per_radian
+
+
+def welded(piece):
+    """The piece's triangles with one index a point, as `is_closed` wants them."""
+    _, which = np.unique(piece.points, axis=0, return_inverse=True)
+
+    class Mesh:
+        triangles = which.reshape(-1)[piece.triangles]
+
+    return Mesh
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+@pytest.mark.parametrize("mapping", BOTH)
+def test_the_texture_fits_everywhere(mapping, mesh):
+    panorama = layered_box(mapping, 48 if mapping == "cube map" else 64)
+    for piece in pieces_of(panorama, 1.0, MESHES[mesh], texture_error_px=ERROR_PX):
+        assert texture_errors(piece).max() < INSIDE_PX
+
+
+def test_without_cutting_it_does_not_fit():
+    panorama = layered_box(width=512, names=("walls",))
+    coarse, fine = (pieces_of(panorama, 1.0, texture_error_px=error)[0] for error in (1e9, ERROR_PX))
+    assert texture_errors(coarse).max() > 1.5 * INSIDE_PX
+    assert texture_errors(fine).max() < INSIDE_PX
+    assert len(coarse.triangles) < len(fine.triangles) < 1.2 * len(coarse.triangles)
+
+
+@pytest.mark.parametrize("mapping", BOTH)
+def test_cutting_leaves_the_surface_as_it_is_and_closed(mapping):
+    width = 192 if mapping == "cube map" else 256
+    piece = pieces_of(layered_box(mapping, width, ("walls",)), 1.0)[0]
+    assert is_closed(welded(piece))
+    a, b, c = piece.points[piece.triangles.T].astype(float)
+    volume = -np.einsum("nk,nk->n", np.cross(b, c), a).sum() / 6
+    assert volume == pytest.approx(8 * HALF.prod(), rel=2e-3)
+
+
+@pytest.mark.parametrize("mapping", BOTH)
+def test_colours_at_vertices_are_those_of_their_directions(mapping):
+    panorama = layered_box(mapping, 48 if mapping == "cube map" else 64)
+    for piece in pieces_of(panorama, 1.0):
+        towards = piece.points / np.linalg.norm(piece.points, axis=1, keepdims=True)
+        got = linear_from_srgb(points_of_piece(piece).colours / 255)
+        # At the domain's edge the colour is that of a texel half a pixel away, of a map so coarse.
+        assert np.abs(got - radiance_in(towards)).max() < 0.05
+        assert np.abs(got - radiance_in(towards)).mean() < 0.01
+
+
+def test_what_lies_at_infinity_is_a_far_sphere_of_its_own():
+    panorama = layered_box()
+    room, window, objects = pieces_of(panorama, 1.0)
+    assert [p.name for p in (room, window, objects)] == ["room", "room at infinity", "objects"]
+    assert room.texture is window.texture
+    far = far_radius(panorama)
+    np.testing.assert_allclose(np.linalg.norm(window.points, axis=1), far, rtol=0.02)
+    farthest = np.linalg.norm(HALF)
+    assert far == pytest.approx(10 * farthest, rel=0.05)
+    assert (window.points[:, 1] > 0.85 * far).all()
+    assert not room.masked
+    assert not objects.masked
+    assert room.two_sided
+    assert objects.two_sided
+
+
+def test_parallax_sets_the_far_sphere_where_the_radius_is_large():
+    panorama = layered_box(width=64)
+    wide = LayeredPanorama(panorama.layers, np.eye(3), np.zeros(3), 20.0)
+    assert far_radius(wide) == pytest.approx(20 * 64 / (2 * np.pi))
+    with pytest.raises(ValueError, match=r"far 3\.0 m must be finite and beyond the farthest surface, 3\."):
+        pieces_of(panorama, 1.0, far=3.0)
+
+
+def test_a_mesh_beyond_the_domain_is_masked_and_a_closed_one_is_one_sided():
+    whole = layered_box(names=("walls",))
+    assert not pieces_of(whole, 1.0)[0].two_sided
+    mesh = MESHES["grid"](whole.layers[0])
+    piece = pieces_of(layered_box(names=("objects",)), 1.0, lambda layer: mesh)[0]
+    assert piece.masked
+    assert {0, 255} == set(np.unique(piece.texture.pixels[..., 3]))
+
+
+def test_colours_are_spread_beyond_the_domain():
+    panorama = layered_box(width=128, names=("objects",))
+    layer = panorama.layers[0]
+    radiance = np.where(layer.mask[..., None], np.ones(3, np.float32), np.float32(np.nan))
+    attributes = {"radiance": radiance, "depth": layer.depth}
+    lit = LayeredPanorama((Layer("lit", layer.mapping, attributes),), np.eye(3), np.zeros(3), 0.0)
+    pixels = pieces_of(lit, 1.0)[0].texture.pixels
+    row, column = 32, np.flatnonzero(~layer.mask[32])
+    assert layer.mask[row, -1]
+    assert layer.mask[row, 0]
+    assert (pixels[row, column[:3], 0] == 255).all()
+    assert (pixels[row, column[-3:], 0] == 255).all()
+    assert (pixels[row, 64, :3] == 0).all()
+
+
+def test_a_seam_vertex_is_two_and_no_triangle_runs_back_over_the_image():
+    piece = pieces_of(layered_box(names=("walls",)), 1.0)[0]
+    u = piece.uv[piece.triangles][..., 0]
+    assert (np.ptp(u, axis=1) < 0.26).all()
+    on_seam = (piece.points[:, 0] < 0) & (np.abs(piece.points[:, 1]) < 1e-6)
+    assert set(piece.uv[on_seam & (np.abs(piece.points[:, 2]) < 1), 0].round(6).tolist()) == {0.0, 1.0}
+
+
+def test_exposure_multiplies_and_clips():
+    pixels = pieces_of(layered_box(names=("walls",)), 4.0)[0].texture.pixels
+    assert pixels[..., :3].max() == 255
+    low = radiance_in((-1, 0, 0))[0] * 4
+    assert linear_from_srgb(pixels[..., 0].min() / 255) == pytest.approx(low, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("chart", "rays", "message"),
+    [
+        (EquirectangularChart(8), [[1, 0, 3], [-1, 1, 3], [-1, -1, 3]], "triangle 0 holds a pole"),
+        (CubeChart(4, 2), [[1, 0, 0], [1, 1.5, 0], [1, 0, 0.5]], "triangle 0 lies on several faces"),
+    ],
+)
+def test_triangles_without_texture_coordinates_are_refused(chart, rays, message):
+    with pytest.raises(ValueError, match=message):
+        chart.uv(np.array([rays], float))
+
+
+def test_layers_that_cannot_be_shown_are_refused():
+    panorama = layered_box(names=("walls",))
+    bare = Layer("bare", "equirectangular", {"depth": panorama.layers[0].depth})
+    with pytest.raises(ValueError, match="layer 'bare' has no radiance"):
+        pieces_of(LayeredPanorama((bare,), np.eye(3), np.zeros(3), 0.0), 1.0)
+    with pytest.raises(ValueError, match="texture error of 0 px must be above 0"):
+        pieces_of(panorama, 1.0, texture_error_px=0)
+
+
+def test_any_mesh_with_points_and_triangles_will_do():
+    panorama = layered_box(width=64, names=("walls",))
+    whole = MESHES["grid"](panorama.layers[0])
+    some = LayerMesh(whole.corners, whole.vertices, whole.depths, whole.triangles[:100])
+    assert len(pieces_of(panorama, 1.0, lambda layer: some)[0].triangles) == 100
