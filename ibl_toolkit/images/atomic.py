@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import shutil
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -35,6 +36,24 @@ def replacing(path):
         _unfinished.discard(temporary)
 
 
+@contextmanager
+def new_folder(path):
+    """A temporary folder beside `path`, which must not be there, that becomes `path` when the block succeeds.
+
+    If the block fails or is interrupted, the folder is deleted with all that is in it.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    _unfinished.add(temporary)
+    try:
+        temporary.mkdir()
+        yield temporary
+        temporary.rename(path)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+        _unfinished.discard(temporary)
+
+
 def refuse_unwritable(path):
     """Raise OSError where no file can be written to `path`: asked before long work that ends with one."""
     handle, name = tempfile.mkstemp(prefix=".", suffix=".part", dir=Path(path).absolute().parent)
@@ -45,4 +64,7 @@ def refuse_unwritable(path):
 def discard_unfinished():
     """Delete what `replacing` has not finished: for a process that ends without unwinding its stack."""
     for temporary in tuple(_unfinished):
-        temporary.unlink(missing_ok=True)
+        if temporary.is_dir():
+            shutil.rmtree(temporary, ignore_errors=True)
+        else:
+            temporary.unlink(missing_ok=True)

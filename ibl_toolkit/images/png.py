@@ -10,6 +10,8 @@ import numpy as np
 from .atomic import replacing
 from .checking import refuse_more_than
 from .errors import ImageError
+from .photo_sphere import PhotoSphere
+from .xmp import with_photo_sphere
 
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)  # Rec. 709
 _MID_GREY = 0.18
@@ -17,23 +19,38 @@ _START = b"\x89PNG\r\n\x1a\n"
 _ABOUT = 512  # rows that a median needs to be good enough
 
 
-def write_png(path, image, *, exposure=1.0):
+def write_png(path, image, *, exposure=1.0, sphere: PhotoSphere | None = None):
     """Write linear `image` (H, W, 3) or (H, W), times `exposure`, with the sRGB transfer, all or nothing.
 
-    What is below 0 becomes black, what is above 1 white.
+    What is below 0 becomes black, what is above 1 white. sphere: what is told of the panorama that the image
+    is (see `photo_sphere`).
 
     Raises: ValueError for NaN, which no grey stands for.
     """
     image = np.asarray(image, dtype=np.float32)
+    refuse_nan(image, path)
+    codes = srgb_codes(image, exposure)
+    if codes.ndim == 3:
+        codes = cv2.cvtColor(codes, cv2.COLOR_RGB2BGR)
+    data = cv2.imencode(".png", codes)[1].tobytes()
+    with replacing(Path(path)) as temporary:
+        temporary.write_bytes(data if sphere is None else with_photo_sphere(data, sphere))
+
+
+def refuse_nan(image, path):
+    """Raise ValueError for NaN in an image that is to be written to `path`."""
     unknown = np.count_nonzero(np.isnan(image))
     if unknown:
         raise ValueError(f"{path}: {unknown} values of the image are NaN, they must be numbers")
-    encoded = np.round(srgb_from_linear(image * np.float32(exposure)) * 255).astype(np.uint8)
-    if encoded.ndim == 3:
-        encoded = cv2.cvtColor(encoded, cv2.COLOR_RGB2BGR)
-    _, file = cv2.imencode(".png", encoded)
-    with replacing(Path(path)) as temporary:
-        file.tofile(temporary)
+
+
+def srgb_codes(image, exposure):
+    """8-bit sRGB values, uint8, of linear ones times `exposure`.
+
+    >>> srgb_codes(np.array([0.0, 0.09, 2.0]), 2.0).tolist()
+    [0, 118, 255]
+    """
+    return np.round(srgb_from_linear(image * np.float32(exposure)) * 255).astype(np.uint8)
 
 
 def read_png(path, *, grey=False, max_bytes):

@@ -31,8 +31,11 @@ class RGBD:
     camera_height: float
 
 
-def read_rgbd(path, *, max_bytes=DEFAULT_MAX_BYTES):
+def read_rgbd(path, *, max_bytes=DEFAULT_MAX_BYTES, frame_needed=True):
     """The RGB-D panorama in an OpenEXR file as `write_rgbd` makes it: R G B, 32-bit Z, two attributes.
+
+    frame_needed: whether both attributes must be there; if not, and neither is, the panorama is taken as
+    level, with its origin at (0, 0, 0).
 
     Raises: ImageError as `read_panorama` does; without depth, of less than 32 bits, or a depth that is
     NaN or not above 0; without the attributes, or with ones that are no rotation and no height.
@@ -53,12 +56,15 @@ def read_rgbd(path, *, max_bytes=DEFAULT_MAX_BYTES):
     refuse_other_shapes(width, height, path)
     pixels, attributes = exr.decode(path, parts, index, (*names, z.name))
     depth = np.ascontiguousarray(pixels.pop(z.name))
-    matrix = _numbers(attributes, WORLD_FROM_PANORAMA, 9, path).reshape(3, 3)
-    camera_height = float(_numbers(attributes, CAMERA_HEIGHT, 1, path)[0])
+    matrix, camera_height = np.eye(3), 0.0
+    has_frame = frame_needed or not {WORLD_FROM_PANORAMA, CAMERA_HEIGHT}.isdisjoint(attributes)
+    if has_frame:
+        matrix = _numbers(attributes, WORLD_FROM_PANORAMA, 9, path).reshape(3, 3)
+        camera_height = float(_numbers(attributes, CAMERA_HEIGHT, 1, path)[0])
     rgbd = RGBD(exr.stacked(pixels, names), depth, matrix, camera_height)
     if refuse_impossible_radiance(rgbd.image, path) < 0:
         np.maximum(rgbd.image, 0, out=rgbd.image)
-    _refuse_impossible(rgbd, path)
+    _refuse_impossible(rgbd, path, has_frame)
     return rgbd
 
 
@@ -121,7 +127,7 @@ def _numbers(attributes, name, count, path):
     return numbers
 
 
-def _refuse_impossible(rgbd, path):
+def _refuse_impossible(rgbd, path, has_frame=True):
     bad = ~(rgbd.depth > 0)  # NaN included
     if bad.any():
         row, column = (int(k) for k in np.argwhere(bad)[0])
@@ -133,5 +139,5 @@ def _refuse_impossible(rgbd, path):
     is_rotation = matrix.shape == (3, 3) and np.allclose(matrix @ matrix.T, np.eye(3), atol=_ORTHONORMAL)
     if not is_rotation or np.linalg.det(matrix) < 0:
         raise ImageError(f"{path}: world_from_panorama {matrix.tolist()} must be a (3, 3) rotation")
-    if not (np.isfinite(rgbd.camera_height) and rgbd.camera_height > 0):
+    if has_frame and not (np.isfinite(rgbd.camera_height) and rgbd.camera_height > 0):
         raise ImageError(f"{path}: camera_height {rgbd.camera_height} m must be finite and above 0")

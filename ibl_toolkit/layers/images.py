@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..images import ImageError, exr, exr_header, write_exr, write_png
+from ..images import ImageError, PhotoSphere, exr, exr_header, write_exr, write_png
 from ..images.png import linear_from_srgb, read_png
 from .panorama import CHANNELS
 
@@ -30,10 +30,15 @@ def suffix_of(attribute: str, ldr: bool) -> str:
     return ".png" if attribute == "mask" or (ldr and attribute in COLOURS) else ".exr"
 
 
-def write_image(path, attribute: str, values: np.ndarray, exposure: float = 1.0):
-    """Write an array (h, w) or (h, w, 3), all or nothing; PNG colours are multiplied with `exposure`."""
+def write_image(
+    path, attribute: str, values: np.ndarray, exposure: float = 1.0, sphere: PhotoSphere | None = None
+):
+    """Write an array (h, w) or (h, w, 3), all or nothing; PNG colours are multiplied with `exposure`.
+
+    sphere: what a PNG file tells viewers of the panorama that it is.
+    """
     if Path(path).suffix == ".png":
-        write_png(path, values, exposure=1.0 if attribute == "mask" else exposure)
+        write_png(path, values, exposure=1.0 if attribute == "mask" else exposure, sphere=sphere)
         return
     kind = _type(attribute, values)
     planes = values[..., None] if values.ndim == 2 else values

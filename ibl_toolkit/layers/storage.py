@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..images import DEFAULT_MAX_BYTES
+from ..images import DEFAULT_MAX_BYTES, PhotoSphere
 from .atlas import Atlas, atlas_of
 from .errors import LayersError
 from .images import read_image, suffix_of, write_image
 from .mip import mip_levels
-from .panorama import CHANNELS, Layer, LayeredPanorama
+from .panorama import CHANNELS, EQUIRECTANGULAR, Layer, LayeredPanorama
 from .xml_file import NAME, LayerFiles, LevelFiles, PanoramaFile, read_xml, write_xml
 
 # An atlas that saves less than this share of the map's area isn't worth its table.
@@ -39,7 +39,8 @@ def write_layers(panorama: LayeredPanorama, folder, *, levels=1, ldr=False, expo
     """Write a panorama into `folder`, made if need be -> the path of its panorama.xml.
 
     levels: resolutions of each layer, halved each time. ldr: colours as 8-bit PNG, multiplied with
-    `exposure` and clipped. What attributes hold outside of the domain is not kept.
+    `exposure` and clipped; what is a whole equirectangular map tells photo-sphere viewers so. What attributes
+    hold outside of the domain is not kept.
 
     The images get names that are not taken, then panorama.xml is replaced in one step, then the images of
     the panorama before are deleted: whatever happens, the old panorama or the new one is there.
@@ -56,7 +57,9 @@ def write_layers(panorama: LayeredPanorama, folder, *, levels=1, ldr=False, expo
     before, written, complete = _files_named_by(folder / NAME), [], False
     try:
         layers = tuple(
-            _written_layer(layer, folder, stem, levels, exposure if ldr else None, written)
+            _written_layer(
+                layer, folder, stem, levels, exposure if ldr else None, written, panorama.world_from_panorama
+            )
             for layer, stem in zip(panorama.layers, _stems(panorama, folder), strict=True)
         )
         place = panorama.world_from_panorama, panorama.origin, panorama.radius
@@ -102,7 +105,7 @@ def read_layers(folder, *, level=0, max_bytes=DEFAULT_MAX_BYTES) -> LayeredPanor
         raise LayersError(f"{path}: {error}") from error
 
 
-def _written_layer(layer, folder, stem, levels, exposure, written):
+def _written_layer(layer, folder, stem, levels, exposure, written, world_from_panorama):
     """LayerFiles of a layer after its images are written; their names go to `written` first."""
     described = []
     for number, level in enumerate(mip_levels(layer, levels)):
@@ -115,7 +118,10 @@ def _written_layer(layer, folder, stem, levels, exposure, written):
             written.append(files[attribute])
             inside = _only_inside(attribute, values, level.mask)
             stored = inside if whole else atlas.packed(inside, _outside(attribute))
-            write_image(folder / files[attribute], attribute, stored, exposure or 1.0)
+            sphere = None
+            if whole and attribute == "radiance" and level.mapping == EQUIRECTANGULAR:
+                sphere = PhotoSphere.whole(*level.size, world_from_panorama)
+            write_image(folder / files[attribute], attribute, stored, exposure or 1.0, sphere)
         table = () if whole else (atlas.map_size, atlas.patches)
         described.append(LevelFiles(files, exposure or 1.0, *table))
     return LayerFiles(layer.name, layer.mapping, tuple(described))

@@ -15,9 +15,11 @@ from .texture import Texture, texture_of
 from .texture_coordinates import shared_vertices
 
 MESHES: dict[str, Callable] = {
-    "quadtree": lambda layer: quadtree_mesh(layer, quadtree_of(layer)),
-    "grid": uniform_mesh,
+    "quadtree": lambda layer, radius: quadtree_mesh(layer, quadtree_of(layer)),
+    "grid": lambda layer, radius: uniform_mesh(layer),
 }
+"""Surfaces of a layer by their names, for panoramas that are looked at within a radius [m]."""
+
 TEXTURE_ERROR_PX = 0.5
 AT_INFINITY = " at infinity"
 _FAR_TIMES = 10  # as far as the farthest surface: behind all of them, however one looks
@@ -54,8 +56,8 @@ def pieces_of(
 ) -> list[Piece]:
     """A piece for each layer; for a layer that is in part at infinity, two.
 
-    mesh_of: gives a mesh (its `points` and `triangles`) over the domain of a layer. What lies at infinity
-    becomes a sphere of the radius `far` [m], `far_radius` if None.
+    mesh_of: gives a mesh (its `points` and `triangles`) over the domain of a layer, for a radius [m]. What
+    lies at infinity becomes a sphere of the radius `far` [m], `far_radius` if None.
 
     Raises: ValueError for a layer without radiance, a `far` nearer than a surface, and a texture error not
     above 0.
@@ -65,7 +67,7 @@ def pieces_of(
     for layer in panorama.layers:
         texture = texture_of(layer, exposure)
         for part in parts_of(layer, far):
-            pieces.append(_piece(part, mesh_of(part), texture, texture_error_px))
+            pieces.append(_piece(part, mesh_of(part, panorama.radius), texture, texture_error_px))
     return pieces
 
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from ... import cube_map, equirectangular
 from ...images import replacing
+from ...images.png import srgb_codes
 from ..panorama import CUBE_MAP, LayeredPanorama
 from .obj import world_points
 from .pieces import Piece, checked_far, parts_of
-from .texture import encoded
 
 _VERTEX = np.dtype([("place", "<f4", 3), ("colour", "u1", 3)])
 _FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3)])
@@ -53,7 +53,7 @@ def points_of_pixels(panorama: LayeredPanorama, exposure: float, far: float | No
         for part in parts_of(layer, far):
             inside = part.mask
             points = directions[inside] * part.depth[inside][:, None]
-            colours = encoded(layer.radiance[inside], exposure)
+            colours = srgb_codes(layer.radiance[inside], exposure)
             clouds.append(Points(part.name, points, colours, np.empty((0, 3), np.uint32)))
     return clouds
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import cv2
 import numpy as np
 
-from ...images.png import srgb_from_linear
+from ...images.png import srgb_codes
 from ..panorama import CUBE_MAP, Layer
 from ..rendered_view import sampled
 from .texture_coordinates import CubeChart, EquirectangularChart, chart_of
@@ -57,14 +57,9 @@ def texture_of(layer: Layer, exposure: float) -> Texture:
         directions = chart.texel_directions()
         linear, alpha = sampled(layer, linear, directions), sampled(layer, alpha, directions)
     pixels = np.empty((*alpha.shape, 4), dtype=np.uint8)
-    pixels[..., :3] = encoded(linear, exposure)
+    pixels[..., :3] = srgb_codes(linear, exposure)
     pixels[..., 3] = np.round(alpha * 255)
     return Texture(layer.name, pixels, chart)
-
-
-def encoded(linear: np.ndarray, exposure: float) -> np.ndarray:
-    """8-bit sRGB (..., 3) of linear radiance times `exposure`."""
-    return np.round(srgb_from_linear(linear * np.float32(exposure)) * 255).astype(np.uint8)
 
 
 def spread(values: np.ndarray, inside: np.ndarray, mapping: str) -> np.ndarray:

@@ -50,6 +50,11 @@ class EquirectangularChart:
         lowest = np.floor(u.min(axis=1, keepdims=True) + _ROUNDING)
         return np.stack([u - lowest, uv[..., 1]], axis=-1)
 
+    def fits(self, rays: np.ndarray) -> np.ndarray:
+        """Whether triangles with corners in the directions (n, 3, 3) lie on one piece of the image: all
+        do."""
+        return np.ones(len(rays), dtype=bool)
+
     def direction(self, uv: np.ndarray) -> np.ndarray:
         """Unit directions (..., 3) of texture coordinates (..., 2)."""
         return equirectangular.direction_from_uv(uv)
@@ -63,6 +68,9 @@ class CubeChart:
     [[0.083, 0.125], [0.25, 0.125], [0.083, 0.375]]
     """
 
+    planes = np.array([[1, -1, 0], [1, 1, 0], [1, 0, -1], [1, 0, 1], [0, 1, -1], [0, 1, 1]], dtype=float)
+    """Normals (n, 3) of the planes through the origin in which the edges of the cube lie."""
+
     def __init__(self, face_size: int, border: int):
         self.pixels_per_radian = 2 * face_size / np.pi
         self._face = face_size, border, face_size + 2 * border
@@ -72,15 +80,9 @@ class CubeChart:
 
         Raises: ValueError for a triangle that lies on more than one face.
         """
-        rays = np.asarray(rays, dtype=np.float64)
-        middle = cube_map.uv_from_direction(rays.sum(axis=1)) * (3, 2)
-        column, row = np.floor(middle).astype(np.int64).T
-        forward, right, down = _axes(3 * row + column)
-        along = np.einsum("nck,nk->nc", rays, forward)
-        s, t = (np.einsum("nck,nk->nc", rays, axis) / along for axis in (right, down))
-        off = (along <= 0) | (np.maximum(np.abs(s), np.abs(t)) > 1 + _OFF_FACE)
-        if off.any():
-            number = int(np.argmax(off.any(axis=1)))
+        fits, column, row, s, t = _on_faces(rays)
+        if not fits.all():
+            number = int(np.argmin(fits))
             raise ValueError(f"triangle {number} lies on several faces of the cube: it must be cut there")
         size, border, whole = self._face
         u, v = (
@@ -88,6 +90,10 @@ class CubeChart:
             for place, coordinate, count in ((column, s, 3), (row, t, 2))
         )
         return np.stack([u, v], axis=-1)
+
+    def fits(self, rays: np.ndarray) -> np.ndarray:
+        """Whether triangles with corners in the directions (n, 3, 3) lie on one face."""
+        return _on_faces(rays)[0]
 
     def direction(self, uv: np.ndarray) -> np.ndarray:
         """Unit directions (..., 3) of texture coordinates (..., 2)."""
@@ -127,6 +133,21 @@ def shared_vertices(triangles: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, 
     key = (triangles.reshape(-1).astype(np.int64) * (4 * _STEPS) + steps[:, 0]) * (4 * _STEPS) + steps[:, 1]
     _, first, which = np.unique(key, return_index=True, return_inverse=True)
     return triangles.reshape(-1)[first], uv.reshape(-1, 2)[first], which.reshape(-1, 3)
+
+
+def _on_faces(rays):
+    """Of triangles (n, k, 3): whether each lies on the face of its middle; column and row of that face, (n,);
+    and where on it its corners are, s to the right and t down, (n, k).
+    """
+    rays = np.asarray(rays, dtype=np.float64)
+    middle = cube_map.uv_from_direction(rays.sum(axis=1)) * (3, 2)
+    column, row = np.floor(middle).astype(np.int64).T
+    forward, right, down = _axes(3 * row + column)
+    along = np.einsum("nck,nk->nc", rays, forward)
+    with np.errstate(divide="ignore", invalid="ignore"):  # far beyond the face
+        s, t = (np.einsum("nck,nk->nc", rays, axis) / along for axis in (right, down))
+    off = (along <= 0) | (np.maximum(np.abs(s), np.abs(t)) > 1 + _OFF_FACE)
+    return ~off.any(axis=1), column, row, s, t
 
 
 def _axes(face):

@@ -5,7 +5,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from expanded_panoramas.ibl_toolkit.images import write_exr
+from expanded_panoramas.ibl_toolkit.images import read_photo_sphere, write_exr
 from expanded_panoramas.ibl_toolkit.layers import storage
 from expanded_panoramas.ibl_toolkit.layers.errors import LayersError
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
@@ -287,3 +287,13 @@ def test_limit_to_memory_is_of_all_layers(tmp_path):
 def test_no_folder(tmp_path):
     with pytest.raises(FileNotFoundError):
         read_layers(tmp_path / "none")
+
+
+def test_whole_pictures_of_8_bits_are_photo_spheres(tmp_path):
+    """And no others: not those of objects, nor of a cube map, nor of other attributes."""
+    write_layers(example(), tmp_path, ldr=True, exposure=0.1)
+    spheres = {path.name: read_photo_sphere(path) for path in tmp_path.glob("*.png")}
+    assert [name for name, sphere in spheres.items() if sphere is not None] == ["0_Background.png"]
+    sphere = spheres["0_Background.png"]
+    assert sphere.full_size == sphere.size == (32, 16)
+    np.testing.assert_allclose(sphere.world_from_panorama, ROTATION, atol=1e-5)

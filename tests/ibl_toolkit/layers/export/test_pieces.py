@@ -53,6 +53,25 @@ def test_without_cutting_it_does_not_fit():
 
 
 @pytest.mark.parametrize("mapping", BOTH)
+def test_large_triangles_over_faces_and_poles(mapping):
+    """Eight of them round the sphere: cut along the edges of the cube, still closed, and textured."""
+    points = np.concatenate([np.eye(3), -np.eye(3)]) * 5
+    triangles = np.array(
+        [[0, 2, 1], [1, 2, 3], [3, 2, 4], [4, 2, 0], [1, 5, 0], [3, 5, 1], [4, 5, 3], [0, 5, 4]]
+    )
+
+    class Octahedron:
+        pass
+
+    Octahedron.points, Octahedron.triangles = points, triangles
+    panorama = layered_box(mapping, 96 if mapping == "cube map" else 128, ("walls",))
+    piece = pieces_of(panorama, 1.0, lambda layer, radius: Octahedron, texture_error_px=ERROR_PX)[0]
+    assert texture_errors(piece).max() < INSIDE_PX
+    assert is_closed(welded(piece))
+    np.testing.assert_allclose(np.abs(piece.points).sum(axis=1), 5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("mapping", BOTH)
 def test_cutting_leaves_the_surface_as_it_is_and_closed(mapping):
     width = 192 if mapping == "cube map" else 256
     piece = pieces_of(layered_box(mapping, width, ("walls",)), 1.0)[0]
@@ -100,8 +119,8 @@ def test_parallax_sets_the_far_sphere_where_the_radius_is_large():
 def test_a_mesh_beyond_the_domain_is_masked_and_a_closed_one_is_one_sided():
     whole = layered_box(names=("walls",))
     assert not pieces_of(whole, 1.0)[0].two_sided
-    mesh = MESHES["grid"](whole.layers[0])
-    piece = pieces_of(layered_box(names=("objects",)), 1.0, lambda layer: mesh)[0]
+    mesh = MESHES["grid"](whole.layers[0], 0)
+    piece = pieces_of(layered_box(names=("objects",)), 1.0, lambda layer, radius: mesh)[0]
     assert piece.masked
     assert {0, 255} == set(np.unique(piece.texture.pixels[..., 3]))
 
@@ -159,6 +178,6 @@ def test_layers_that_cannot_be_shown_are_refused():
 
 def test_any_mesh_with_points_and_triangles_will_do():
     panorama = layered_box(width=64, names=("walls",))
-    whole = MESHES["grid"](panorama.layers[0])
+    whole = MESHES["grid"](panorama.layers[0], 0)
     some = LayerMesh(whole.corners, whole.vertices, whole.depths, whole.triangles[:100])
-    assert len(pieces_of(panorama, 1.0, lambda layer: some)[0].triangles) == 100
+    assert len(pieces_of(panorama, 1.0, lambda layer, radius: some)[0].triangles) == 100
