@@ -34,6 +34,6 @@ def layered_box(mapping="equirectangular", width=64, names=("room", "objects")):
     layers = {
         "room": Layer("room", mapping, {"radiance": colour, "depth": open_room}),
         "walls": Layer("walls", mapping, {"radiance": colour, "depth": depth}),
-        "objects": Layer("objects", mapping, {"radiance": colour, "depth": near}),
+        "objects": Layer("objects", mapping, {"radiance": colour.copy(), "depth": near}),
     }
     return LayeredPanorama(tuple(layers[name] for name in names), ROTATION, ORIGIN, RADIUS)
