@@ -19,6 +19,7 @@ MESHES: dict[str, Callable] = {
     "grid": lambda layer, radius: uniform_mesh(layer),
 }
 """Surfaces of a layer by their names, for panoramas that are looked at within a radius [m]."""
+BEST = "quadtree"
 
 TEXTURE_ERROR_PX = 0.5
 AT_INFINITY = " at infinity"
@@ -50,7 +51,7 @@ class Piece:
 def pieces_of(
     panorama: LayeredPanorama,
     exposure: float,
-    mesh_of: Callable = MESHES["quadtree"],
+    mesh_of: Callable = MESHES[BEST],
     far: float | None = None,
     texture_error_px: float = TEXTURE_ERROR_PX,
 ) -> list[Piece]:
@@ -104,6 +105,12 @@ def checked_far(panorama: LayeredPanorama, far: float | None) -> float:
     return far
 
 
+def leaves_domain(part: Layer, corners: np.ndarray) -> bool:
+    """Whether triangles with corners (T, 3, 3), panorama frame, show something outside of the domain."""
+    directions = np.einsum("pc,tck->tpk", _PLACES, corners)
+    return bool((sampled(part, part.mask.astype(np.float32), directions) <= 0).any())
+
+
 def _farthest(panorama):
     finite = (layer.depth[layer.mask & np.isfinite(layer.depth)] for layer in panorama.layers)
     return float(max((depth.max() for depth in finite if depth.size), default=0.0))
@@ -118,12 +125,6 @@ def _piece(part, mesh, texture, error_px):
         uv.astype(np.float32),
         shared.astype(np.uint32),
         texture,
-        masked=_leaves_domain(part, points[triangles]),
+        masked=leaves_domain(part, points[triangles]),
         two_sided=not part.mask.all(),
     )
-
-
-def _leaves_domain(part, corners):
-    """Whether triangles with these corners (T, 3, 3) show something outside of the domain."""
-    directions = np.einsum("pc,tck->tpk", _PLACES, corners)
-    return bool((sampled(part, part.mask.astype(np.float32), directions) <= 0).any())

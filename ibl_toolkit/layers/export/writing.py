@@ -11,7 +11,7 @@ from ...images import exposure_for
 from ..panorama import LayeredPanorama
 from .gltf import write_glb
 from .obj import write_obj
-from .pieces import MESHES, TEXTURE_ERROR_PX, pieces_of
+from .pieces import BEST, MESHES, TEXTURE_ERROR_PX, pieces_of
 from .ply import bytes_of, points_of_piece, points_of_pixels, write_ply
 
 POINTS = "points"
@@ -50,7 +50,7 @@ def export_layers(
 ) -> Exported:
     """Write the layers as `path`: .glb, .obj (with .mtl and textures beside it), or .ply.
 
-    surface: of SURFACES; if None, "quadtree", in a .ply file, whose colours are those of vertices, "points".
+    surface: of SURFACES; if None, BEST, in a .ply file, whose colours are those of vertices, "points".
     exposure: what radiance is multiplied with before it is clipped to 8 bits; if None, so that the median of
     all layers becomes mid grey. far: radius [m] of the sphere that stands for infinity, see
     `pieces.far_radius`. texture_error_px: by how many pixels a texture may be off in the middle of a
@@ -61,7 +61,7 @@ def export_layers(
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    surface = surface or (POINTS if suffix == ".ply" else next(iter(MESHES)))
+    surface = surface or (POINTS if suffix == ".ply" else BEST)
     _refuse_other(path, suffix, surface, exposure)
     exposure = exposure or exposure_of(panorama)
     if surface == POINTS:
