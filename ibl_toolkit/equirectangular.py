@@ -146,11 +146,11 @@ def _bilinear(texels, ij, width, height):
     corner = np.floor(ij)
     fraction = ij - corner
     i, j = corner.astype(np.int64).T
-    indices = [_texel_index(i + a, j + b, width, height) for b in (0, 1) for a in (0, 1)]
+    indices = [texel_index(i + a, j + b, width, height) for b in (0, 1) for a in (0, 1)]
     return weighted_texels(texels, indices, bilinear_weights(*fraction.T))
 
 
-def _texel_index(i, j, width, height):
+def texel_index(i, j, width, height):
     """Row-major index of pixel (i, j), taken round the seam and over the poles."""
     over_a_pole = (j < 0) | (j >= height)
     i = (i + np.where(over_a_pole, width // 2, 0)) % width
