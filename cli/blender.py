@@ -1,5 +1,6 @@
 """Blender for a job: an empty file with the package registered, in a Python with bpy or in Blender itself."""
 
+import os
 from contextlib import contextmanager
 from importlib import import_module
 
@@ -12,16 +13,35 @@ def empty_scene(progress):
 
     Raises: ValueError without bpy.
     """
+    bpy = _blender()
+    # The user's add-ons stay as they are: read_factory_settings would take this one away while it runs.
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with _registered(bpy), _reporting(bpy.app.handlers, progress):
+        yield bpy.context.scene
+
+
+@contextmanager
+def opened_scene(path, progress):
+    """The active scene of a .blend, for one job; its renders report to `progress`. Its scripts don't run.
+
+    Raises: ValueError without bpy; OSError where the file cannot be read.
+    """
+    bpy = _blender()
+    with _registered(bpy):
+        with errors_of(path):
+            bpy.ops.wm.open_mainfile(filepath=os.path.abspath(path), load_ui=False, use_scripts=False)
+        with _reporting(bpy.app.handlers, progress):
+            yield bpy.context.scene
+
+
+def _blender():
     try:
         import bpy
     except ModuleNotFoundError as missing:
         raise ValueError(
             "this verb needs Blender: install bpy beside, or use blender --background --command panorama …"
         ) from missing
-    # The user's add-ons stay as they are: read_factory_settings would take this one away while it runs.
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    with _registered(bpy), _reporting(bpy.app.handlers, progress):
-        yield bpy.context.scene
+    return bpy
 
 
 @contextmanager

@@ -81,6 +81,18 @@ def one_or_three(text):
     return numbers
 
 
+def positive(text):
+    """A finite number above 0.
+
+    >>> positive("0.5")
+    0.5
+    """
+    number = _number(text)
+    if number is None or number <= 0:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number above 0")
+    return number
+
+
 def _number(text):
     """A finite number, or None."""
     try:

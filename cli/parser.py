@@ -3,10 +3,18 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, lights, render
+from . import batch, build, calibrate, depth, export, layers, lights, render
 from .messages import warn
 
-VERBS = {"calibrate": calibrate, "build": build, "depth": depth, "lights": lights, "render": render}
+VERBS = {
+    "calibrate": calibrate,
+    "build": build,
+    "depth": depth,
+    "lights": lights,
+    "render": render,
+    "layers": layers,
+    "export": export,
+}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -34,7 +42,7 @@ def parser():
             metavar=module.OUTPUT,
             type=Path,
             required=module.NEEDS_OUTPUT,
-            help="file to write",
+            help=f"{'folder' if module.OUTPUT == 'FOLDER' else 'file'} to write",
         )
         module.add_options(verb)
         _add_common(verb)

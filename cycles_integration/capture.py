@@ -98,6 +98,15 @@ def render_in_strips(scene: bpy.types.Scene, names: tuple[str, ...]) -> dict[str
 
 def render_passes(scene: bpy.types.Scene) -> dict[str, np.ndarray]:
     """Render and return the view layer's passes by name: (H, W) or (H, W, C) float32, top row first."""
+    by_layer = render_view_layers(scene)
+    return {name: pixels for passes in by_layer.values() for name, pixels in passes.items()}
+
+
+def render_view_layers(scene: bpy.types.Scene) -> dict[str, dict[str, np.ndarray]]:
+    """Render all view layers in one job and return the passes of each, as of `render_passes`.
+
+    Names of layers must not have a full stop in them.
+    """
     with tempfile.TemporaryDirectory() as folder:
         settings = scene.render.image_settings
         if hasattr(settings, "media_type"):  # Blender 5.0
@@ -108,5 +117,8 @@ def render_passes(scene: bpy.types.Scene) -> dict[str, np.ndarray]:
         bpy.ops.render.render(write_still=True, scene=scene.name)
         parts = OpenEXR.File(scene.render.filepath).parts  # one part per pass from Blender 5.0
         channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
-    passes = {name.split(".")[1]: pixels for name, pixels in channels.items()}
-    return {NAMES_BEFORE_5.get(name, name): pixels for name, pixels in passes.items()}
+    by_layer = {}
+    for path, pixels in channels.items():
+        layer, name = path.split(".")[:2]
+        by_layer.setdefault(layer, {})[NAMES_BEFORE_5.get(name, name)] = pixels
+    return by_layer

@@ -3,7 +3,7 @@
 import pytest
 
 from expanded_panoramas.ibl_toolkit.images import replacing
-from expanded_panoramas.ibl_toolkit.images.atomic import refuse_unwritable
+from expanded_panoramas.ibl_toolkit.images.atomic import discard_unfinished, new_folder, refuse_unwritable
 
 
 @pytest.fixture
@@ -57,3 +57,30 @@ def test_where_no_file_can_be_written(tmp_path):
     for target in (tmp_path / "file" / "new.exr", tmp_path / "gone" / "new.exr"):
         with pytest.raises(OSError, match=target.parent.name):
             refuse_unwritable(target)
+
+
+def test_a_new_folder_is_there_whole_or_not_at_all(tmp_path):
+    with new_folder(tmp_path / "layers") as folder:
+        (folder / "a.exr").write_text("a")
+        assert not (tmp_path / "layers").exists()
+    assert [path.name for path in (tmp_path / "layers").iterdir()] == ["a.exr"]
+
+    def fail():
+        with new_folder(tmp_path / "other") as folder:
+            (folder / "a.exr").write_text("a")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fail()
+    assert [path.name for path in tmp_path.iterdir()] == ["layers"]
+
+
+def test_an_unfinished_folder_can_be_discarded(tmp_path):
+    def leave():
+        with new_folder(tmp_path / "layers") as folder:
+            (folder / "a.exr").write_text("a")
+            discard_unfinished()
+            assert not list(tmp_path.iterdir())
+
+    with pytest.raises(FileNotFoundError):
+        leave()

@@ -1,0 +1,225 @@
+"""`panorama layers INPUT -o FOLDER`: a panorama in layers, of a picture with depth, a set, or a scene."""
+
+import os
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from ..ibl_toolkit.images import read_rgbd
+from ..ibl_toolkit.images.atomic import new_folder
+from ..ibl_toolkit.layers.making.check import check_layers
+from ..ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
+from ..ibl_toolkit.layers.making.uncovered import share_of_sphere, usual_radius
+from ..ibl_toolkit.layers.storage import write_layers
+from ..ibl_toolkit.layers.xml_file import NAME
+from . import blender
+from .job import naming, open_job, place_in, rebuild
+from .options import positive, whole_number
+from .progress import Progress
+
+INPUT = "RGB-D panorama (.exr), panorama set (.json) or scene (.blend)"
+SUMMARY = "make a panorama in layers: what is seen from its origin, and what hides behind"
+OUTPUT, SUFFIX, NEEDS_OUTPUT = "FOLDER", "_layers", True
+SAMPLES, WIDTH, MOST = 64, 2048, 4
+
+
+@dataclass(frozen=True)
+class LayersOptions:
+    """The options of the verb, by the same names; None: its default.
+
+    radius, origin: [m]. width, samples, seed, denoise: of renders. collections: of a scene, a layer each.
+    """
+
+    radius: float | None = None
+    layers: int | None = None
+    width: int | None = None
+    samples: int | None = None
+    seed: int | None = None
+    denoise: bool = False
+    origin: tuple[float, float, float] | None = None
+    collections: tuple[str, ...] = ()
+    levels: int = 1
+    ldr: bool = False
+
+
+RENDERED = ("width", "samples", "seed", "denoise", "origin", "collections")
+OF_SCENES = ("origin", "collections")
+
+
+def add_options(parser):
+    """Add the verb's own options."""
+    add = parser.add_argument
+    add("--radius", metavar="R", type=positive, help="how far from the origin views will be [m]")
+    add("--layers", metavar="N", type=whole_number(1), help="layers at most")
+    add("--width", metavar="W", type=whole_number(8, 65536), help=f"of renders [px] (default: {WIDTH})")
+    add("--samples", metavar="N", type=whole_number(1), help=f"of renders: paths per pixel ({SAMPLES})")
+    add("--seed", metavar="S", type=whole_number(0), help="of renders: another gives other noise (0)")
+    add("--denoise", action="store_true", help="of renders: remove noise, and some detail with it")
+    add("--origin", metavar=("X", "Y", "Z"), type=float, nargs=3, help="of a scene (its active camera's)")
+    add(
+        "--collection",
+        dest="collections",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="of a scene: a layer for each collection that is named, in place of one for each surface",
+    )
+    add("--levels", metavar="N", type=whole_number(1, 16), default=1, help="mip levels (default: 1)")
+    add("--ldr", action="store_true", help="colours as 8-bit PNG")
+
+
+def run(input_path, output, options, progress):
+    """Do the verb -> what `--json` prints."""
+    given = {field.name: getattr(options, field.name) for field in fields(LayersOptions)}
+    return make_layers(input_path, output, LayersOptions(**given), progress)
+
+
+def make_layers(input_path, output, options=None, progress=None):
+    """Write a panorama in layers into the folder `output` -> its layers, radius, origin and seconds.
+
+    input_path: an RGB-D panorama (.exr), a panorama set (.json), or a scene (.blend). A new folder is there
+    whole or not at all; in one that has a panorama in layers the new one takes its place.
+    """
+    options, progress = options or LayersOptions(), progress or Progress()
+    path, output = Path(input_path), Path(output)
+    make = {".exr": _from_rgbd, ".json": _from_set, ".blend": _from_scene}.get(path.suffix.lower())
+    if make is None:
+        raise ValueError(f"{path}: must be {INPUT}")
+    _refuse_options(path, options)
+    _refuse_folder(output)
+    panorama = make(path, options, progress)
+    with progress.step("writing"):
+        _write(panorama, output, options)
+    return _result(panorama, progress)
+
+
+def _from_rgbd(path, options, progress):
+    with progress.step("reading"):
+        rgbd = read_rgbd(path, frame_needed=False)
+    with progress.step("layers"), naming(path):
+        return layers_from_rgbd(
+            rgbd.image,
+            rgbd.depth,
+            usual_radius(rgbd.depth) if options.radius is None else options.radius,
+            world_from_panorama=rgbd.world_from_panorama,
+            origin=(0.0, 0.0, rgbd.camera_height),
+            count=options.layers,
+        )
+
+
+def _from_set(path, options, progress):
+    job = open_job(path)
+    pieces = rebuild(job)
+    with blender.empty_scene(progress) as scene, naming(path):
+        from ..cycles_integration.place_layers import capture_place
+
+        place_in(scene, job, pieces)
+        with _steps(progress) as tell:
+            return capture_place(scene, options.radius, _capture(options), tell)
+
+
+def _from_scene(path, options, progress):
+    with open(path, "rb"):  # Blender's own complaint is long
+        pass
+    with blender.opened_scene(path, progress) as scene, naming(path):
+        from ..cycles_integration.collection_layers import capture_collections
+        from ..cycles_integration.layer_capture import capture_surfaces
+        from ..cycles_integration.layer_scene import frame_of
+
+        frame = frame_of(scene, options.origin)
+        if options.collections:
+            with progress.step("rendering"):
+                return capture_collections(
+                    scene, frame, options.radius, _capture(options), options.collections
+                )
+        with _steps(progress) as tell:
+            return capture_surfaces(scene, frame, options.radius, _capture(options), tell)
+
+
+@contextmanager
+def _steps(progress):
+    """A function that ends the step before and begins that of a name."""
+    with ExitStack() as stack:
+
+        def tell(name):
+            stack.close()
+            stack.enter_context(progress.step(name))
+
+        yield tell
+
+
+def _capture(options):
+    from ..cycles_integration.layer_capture import LayerCapture
+
+    def given(value, default):
+        return default if value is None else value
+
+    return LayerCapture(
+        width=given(options.width, WIDTH),
+        samples=given(options.samples, SAMPLES),
+        most=given(options.layers, MOST),
+        denoise=options.denoise,
+        seed=options.seed or 0,
+    )
+
+
+def _refuse_options(path, options):
+    """Options that would do nothing."""
+    kind = path.suffix.lower()
+    idle = {".exr": RENDERED, ".json": OF_SCENES}.get(kind, ("layers",) if options.collections else ())
+    for name in idle:
+        if getattr(options, name) not in (None, False, ()) and getattr(options, name) != []:
+            option = "--collection" if name == "collections" else f"--{name}"
+            raise ValueError(f"{option}: does nothing for {path}{' with --collection' * (name == 'layers')}")
+
+
+def _refuse_folder(output):
+    """Raise ValueError unless a panorama can be written at `output` without harm to other files."""
+    if not output.absolute().parent.is_dir():
+        raise ValueError(f"-o {output}: folder {output.parent} does not exist")
+    if output.exists() and not output.is_dir():
+        raise ValueError(f"-o {output}: is a file; must be a folder, new or with a panorama in layers")
+    if output.is_dir() and any(output.iterdir()) and not (output / NAME).is_file():
+        raise ValueError(f"-o {output}: has other files in it and no {NAME}; name another folder")
+    if not os.access(output if output.is_dir() else output.absolute().parent, os.W_OK):
+        raise ValueError(f"-o {output}: cannot be written")
+
+
+def _write(panorama, output, options):
+    if output.is_dir():
+        write_layers(panorama, output, levels=options.levels, ldr=options.ldr)
+        return
+    with new_folder(output) as folder:
+        write_layers(panorama, folder, levels=options.levels, ldr=options.ldr)
+
+
+def _result(panorama, progress):
+    with progress.step("checking"):
+        report = check_layers(panorama)
+    return {
+        "radius": float(panorama.radius),
+        "origin": [float(x) for x in panorama.origin],
+        "layers": [
+            {
+                "name": layer.name,
+                "size": list(layer.size),
+                "share": share_of_sphere(layer.mask),
+                "discontinuities": report.jumps[layer.name],
+            }
+            for layer in panorama.layers
+        ],
+        "seconds": dict(progress.seconds),
+        "warnings": list(report.warnings),
+    }
+
+
+def describe(result):
+    """One line for each layer."""
+    lines = [f"radius {result['radius']:.3g} m round ({', '.join(f'{x:.3g}' for x in result['origin'])})"]
+    for layer in result["layers"]:
+        width, height = layer["size"]
+        lines.append(
+            f"{layer['name']}: {width} × {height} px, {100 * layer['share']:.2f} % of the sphere, "
+            f"{layer['discontinuities']} jumps of depth"
+        )
+    return lines

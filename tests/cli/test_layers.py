@@ -1,0 +1,184 @@
+"""`layers`: what it writes, what it prints, what it refuses before any work."""
+
+import json
+
+import numpy as np
+import pytest
+
+from expanded_panoramas.ibl_toolkit import equirectangular
+from expanded_panoramas.ibl_toolkit.images import RGBD, write_exr, write_rgbd
+from expanded_panoramas.ibl_toolkit.layers.storage import read_layers
+
+WIDTH = 64
+WALL, CARD = 4.0, 1.5
+
+
+@pytest.fixture
+def rgbd_file(tmp_path):
+    """A card before a wall all round."""
+    path = tmp_path / "map.exr"
+    write_rgbd(path, RGBD(*card_picture(), np.eye(3), 1.6))
+    return path
+
+
+def card_picture():
+    directions = equirectangular.pixel_directions(WIDTH, WIDTH // 2)
+    is_card = (directions[..., 0] > 0.8) & (np.abs(directions[..., 2]) < 0.3)
+    image = np.where(is_card[..., None], np.float32(0.8), np.float32([0.1, 0.2, 0.3])).astype(np.float32)
+    return image, np.where(is_card, CARD, WALL).astype(np.float32)
+
+
+def save_scene(bpy, path):
+    """A ball before a wall, and a camera; of the file `path`."""
+    import small_scenes as small
+
+    scene = bpy.context.scene
+    small.add_plane(scene, small.material("ShaderNodeEmission"), 6, (3, 0, 0), (-1, 0, 0))
+    small.add_ball(scene, small.material("ShaderNodeEmission", Color=(1, 0, 0, 1)), 0.5, (1.5, 0, 0))
+    small.add_camera(scene, (0, 0, 0), (0, 1, 0), field_of_view=1)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+
+
+def test_an_rgbd_panorama_becomes_layers(rgbd_file, tmp_path, panorama):
+    folder = tmp_path / "layers"
+    command = ["layers", rgbd_file, "-o", folder, "--radius", 0.5]
+    status, out, err = panorama(*command, "--json")
+    result = json.loads(out)
+    assert (status, err) == (0, [])
+    assert set(result) == {"radius", "origin", "layers", "seconds", "warnings"}
+    assert (result["radius"], result["origin"], result["warnings"]) == (0.5, [0.0, 0.0, 1.6], [])
+    written = read_layers(folder)
+    assert [layer["name"] for layer in result["layers"]] == [layer.name for layer in written.layers]
+    assert len(written.layers) == 2
+    for layer, described in zip(written.layers, result["layers"], strict=True):
+        assert described["size"] == list(layer.size)
+        assert described["discontinuities"] == 0
+        assert described["share"] == pytest.approx(weights()[layer.mask].sum())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["layers", "map.exr"]
+
+
+def weights():
+    angles = equirectangular.row_solid_angles(WIDTH, WIDTH // 2) / (4 * np.pi)
+    return np.repeat(angles[:, None], WIDTH, axis=1)
+
+
+def test_without_attributes_it_is_level_at_the_world_origin(tmp_path, panorama):
+    image, depth = card_picture()
+    write_exr(tmp_path / "map.exr", {**{name: image[..., k] for k, name in enumerate("RGB")}, "Z": depth})
+    status, out, _ = panorama("layers", tmp_path / "map.exr", "-o", tmp_path / "layers", "--json")
+    assert status == 0
+    assert json.loads(out)["origin"] == [0.0, 0.0, 0.0]
+    assert json.loads(out)["radius"] == pytest.approx(CARD / 2)
+
+
+def test_a_second_run_replaces_the_first_and_levels_and_ldr_are_written(rgbd_file, tmp_path, panorama):
+    folder = tmp_path / "layers"
+    for radius in (0.2, 0.5):
+        command = [
+            "layers",
+            rgbd_file,
+            "-o",
+            folder,
+            "--radius",
+            radius,
+            "--levels",
+            2,
+            "--ldr",
+            "--layers",
+            1,
+        ]
+        status, out, err = panorama(*command)
+        assert status == 0
+    assert out.splitlines()[0] == "radius 0.5 m round (0, 0, 1.6)"
+    assert len(out.splitlines()) == 2
+    assert "warning: layer 'background': depth jumps" in err[0]
+    assert read_layers(folder).radius == 0.5
+    assert read_layers(folder, level=1).layers[0].size == (WIDTH // 2, WIDTH // 4)
+    assert len(list(folder.glob("*.png"))) == 2
+
+
+def test_a_scene_is_rendered(fresh_blend, tmp_path, panorama):
+    save_scene(fresh_blend, tmp_path / "scene.blend")
+    before = (tmp_path / "scene.blend").read_bytes()
+    command = [
+        "layers",
+        tmp_path / "scene.blend",
+        "-o",
+        tmp_path / "layers",
+        "--width",
+        WIDTH,
+        "--samples",
+        1,
+    ]
+    _, out, _ = panorama(*command, "--radius", 0.5, "--layers", 2, "--json")
+    result = json.loads(out)
+    assert [layer["name"] for layer in result["layers"]] == ["surface 1", "surface 2"]
+    assert result["layers"][0]["share"] == pytest.approx(1)
+    assert {"surface 1", "surface 2", "writing"} <= set(result["seconds"])
+    second = read_layers(tmp_path / "layers").layers[1]
+    np.testing.assert_allclose(np.nanmin(second.depth), 3, rtol=0.03)
+    assert (tmp_path / "scene.blend").read_bytes() == before
+
+
+def test_origin_of_a_scene(fresh_blend, tmp_path, panorama):
+    save_scene(fresh_blend, tmp_path / "scene.blend")
+    command = ["layers", tmp_path / "scene.blend", "-o", tmp_path / "layers", "--width", 16, "--samples", 1]
+    _, out, _ = panorama(*command, "--origin", 0, "1.5", "0.5", "--layers", 1, "--json")
+    assert json.loads(out)["origin"] == [0, 1.5, 0.5]
+
+
+def test_collections_of_a_scene_are_layers(fresh_blend, tmp_path, panorama):
+    save_scene(fresh_blend, tmp_path / "scene.blend")
+    command = ["layers", tmp_path / "scene.blend", "-o", tmp_path / "layers", "--collection", "things"]
+    status, _, err = panorama(*command)
+    assert status == 2
+    assert "has no collection 'things'; its collections: none" in err[0]
+    scene = fresh_blend.context.scene
+    things = fresh_blend.data.collections.new("things")
+    scene.collection.children.link(things)
+    for thing in scene.objects:
+        things.objects.link(thing)
+    fresh_blend.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    _, out, _ = panorama(*command, "--width", 16, "--samples", 1, "--json")
+    assert [layer["name"] for layer in json.loads(out)["layers"]] == ["things"]
+
+
+def test_a_set_is_rebuilt_and_shows_its_photograph(fresh_blend, room, panorama):
+    command = ["layers", room / "room.json", "-o", room / "layers", "--width", 128, "--samples", 1]
+    _, out, _ = panorama(*command, "--radius", 0.4, "--json")
+    result = json.loads(out)
+    assert result["origin"] == pytest.approx([0, 0, 1.5])
+    first, second = read_layers(room / "layers").layers[:2]
+    from expanded_panoramas.ibl_toolkit.images import read_panorama
+
+    photograph = read_panorama(room / "room.exr")
+    assert np.median(np.abs(first.radiance / photograph - 1)) < 2e-3
+    assert (second.depth[second.mask] > first.depth[second.mask]).all()
+    assert second.radiance[second.mask].mean() > 0.01
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["map.png", "-o", "new"], "map.png: must be RGB-D panorama"),
+        (["map.exr", "-o", "none/new"], "folder none does not exist"),
+        (["map.exr", "-o", "map.exr"], "-o map.exr: is a file"),
+        (["map.exr", "-o", "."], "has other files in it and no panorama.xml"),
+        (["map.exr", "-o", "new", "--samples", "3"], "--samples: does nothing for map.exr"),
+        (["map.exr", "-o", "new", "--collection", "a"], "--collection: does nothing for map.exr"),
+        (["room.json", "-o", "new", "--origin", "0", "0", "1"], "--origin: does nothing for room.json"),
+        (
+            ["a.blend", "-o", "new", "--layers", "3", "--collection", "b"],
+            "--layers: does nothing for a.blend",
+        ),
+        (["a.blend", "-o", "new"], "a.blend: No such file"),
+        (["map.exr", "-o", "new", "--radius", "0"], "'0': must be a number above 0"),
+    ],
+)
+def test_what_cannot_be_is_refused_first(rgbd_file, panorama, monkeypatch, arguments, words):
+    monkeypatch.chdir(rgbd_file.parent)
+    before = sorted(path.name for path in rgbd_file.parent.iterdir())
+    status, out, err = panorama("layers", *arguments)
+    assert (status, out) == (2, "")
+    assert words in err[-1]
+    assert sorted(path.name for path in rgbd_file.parent.iterdir()) == before
