@@ -6,6 +6,8 @@ from . import (
     asset_library,
     calibration,
     clipped_light,
+    layer_properties,
+    layers,
     light,
     long_work,
     picking,
@@ -39,14 +41,16 @@ OPERATORS = (
     clipped_light,
     pictures,
     render_presets,
+    layers,
     asset_library,
 )
 
 
 def register():
-    """Register the scene's panorama set and its view settings, then the operators on them."""
+    """Register the scene's panorama set, its view settings and layers, then the operators on them."""
     properties.register()
     view_properties.register()
+    layer_properties.register()
     base.register()
     for module in OPERATORS:
         for cls in module.classes:
@@ -61,5 +65,6 @@ def unregister():
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)
     base.unregister()
+    layer_properties.unregister()
     view_properties.unregister()
     properties.unregister()

@@ -1,6 +1,9 @@
 """Every panel draws in every state of the work, names operators that exist, and says what comes next."""
 
+from layered_box import layered_box
 from room_job import built, calibrated, select
+
+from expanded_panoramas.ibl_toolkit.layers.storage import write_layers
 
 
 class Layout:
@@ -64,9 +67,9 @@ class Properties:
 
 def draw_all(bpy):
     """Draw the sidebar; returns its texts by panel."""
-    from expanded_panoramas.ui import picture_panels, place_panels
+    from expanded_panoramas.ui import layer_panel, picture_panels, place_panels
 
-    classes = (*place_panels.classes, *picture_panels.classes)
+    classes = (*place_panels.classes, *picture_panels.classes, *layer_panel.classes)
     return {cls.__name__: draw(bpy, cls) for cls in classes}
 
 
@@ -101,6 +104,21 @@ def test_it_follows_the_work(fresh_blend, tmp_path):
     texts = draw_all(bpy)
     assert "Step 2" in texts["PANORAMA_PT_job"]
     assert "calibrate again" in texts["PANORAMA_PT_calibration"]
+
+
+def test_layers_say_what_is_there_and_what_is_missing(fresh_blend, tmp_path):
+    layers = fresh_blend.context.scene.panorama_layers
+    texts = draw_all(fresh_blend)["PANORAMA_PT_layers"]
+    assert "Calibrate first" in texts
+    assert "Choose a folder with layers, or make them" in texts
+    write_layers(layered_box(), tmp_path / "box")
+    layers.folder = str(tmp_path / "box")
+    texts = draw_all(fresh_blend)["PANORAMA_PT_layers"]
+    assert "room, objects; radius 0.5 m" in texts
+    assert "Choose" not in texts
+    (tmp_path / "box" / "panorama.xml").write_text("<no")
+    layers.folder = str(tmp_path / "box")
+    assert "no XML that can be read" in draw_all(fresh_blend)["PANORAMA_PT_layers"]
 
 
 def test_every_kind_of_pick_and_shape_draws(fresh_blend):
