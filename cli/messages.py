@@ -20,9 +20,10 @@ def one_line(error):
 
 
 def warn(verb, set_path, result):
-    """Print the warnings of a result, its own and those of its shapes."""
+    """Print the warnings of a result, its own and those of its shapes; set_path: None for a verb without."""
+    start = "warning" if set_path is None else f"{set_path}: warning"
     for text in result.get("warnings", ()):
-        complain(verb, f"{set_path}: warning: {text}")
+        complain(verb, f"{start}: {text}")
     for shape in result.get("shapes", ()):
         for text in shape["warnings"]:
-            complain(verb, f"{set_path}: warning: shape '{shape['name']}': {text}")
+            complain(verb, f"{start}: shape '{shape['name']}': {text}")

@@ -81,6 +81,18 @@ def one_or_three(text):
     return numbers
 
 
+def finite(text):
+    """A finite number.
+
+    >>> finite("-22.9")
+    -22.9
+    """
+    number = _number(text)
+    if number is None:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number")
+    return number
+
+
 def positive(text):
     """A finite number above 0.
 

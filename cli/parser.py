@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, export, layers, lights, render
+from . import batch, build, calibrate, depth, export, layers, lights, render, sun
 from .messages import warn
 
 VERBS = {
@@ -15,6 +15,8 @@ VERBS = {
     "layers": layers,
     "export": export,
 }
+WITHOUT_SET = {"sun": sun}
+"""Verbs whose options say all: no input file, no output, and nothing to do in a batch."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -47,6 +49,11 @@ def parser():
         module.add_options(verb)
         _add_common(verb)
         verb.set_defaults(module=module, job=_run_one, describe=module.describe)
+    for name, module in WITHOUT_SET.items():
+        verb = verbs.add_parser(name, help=module.SUMMARY, description=_sentence(module.SUMMARY))
+        module.add_options(verb)
+        _add_common(verb)
+        verb.set_defaults(module=module, job=_run_without_set, describe=module.describe)
     _add_batch(verbs)
     return root
 
@@ -81,6 +88,14 @@ def _run_one(arguments, progress):
     result = arguments.module.run(arguments.set, arguments.output, arguments, progress)
     if not arguments.json:
         warn(arguments.verb, arguments.set, result)
+    return result, 0
+
+
+def _run_without_set(arguments, progress):
+    """Do a verb that needs no set -> what it prints, exit status."""
+    result = arguments.module.run(arguments, progress)
+    if not arguments.json:
+        warn(arguments.verb, None, result)
     return result, 0
 
 
