@@ -149,7 +149,7 @@ def _steps(progress):
 
 
 def _capture(options):
-    from ..cycles_integration.layer_capture import LayerCapture
+    from ..cycles_integration.layer_render import LayerCapture
 
     def given(value, default):
         return default if value is None else value

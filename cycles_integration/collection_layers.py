@@ -11,7 +11,7 @@ from mathutils import Matrix
 from ..ibl_toolkit.layers.making.uncovered import usual_radius
 from ..ibl_toolkit.layers.panorama import EQUIRECTANGULAR, Layer, LayeredPanorama
 from . import capture
-from .layer_capture import LayerCapture, centres, mean_of_surface, ray_depth, refuse_other_radius, set_up
+from .layer_render import LayerCapture, centres, mean_of_surface, ray_depth, refuse_other_radius, set_up
 from .layer_scene import rendered_scene
 from .view_layers import layer_collection
 

@@ -10,12 +10,14 @@ from __future__ import annotations
 import contextlib
 
 import bpy
+import numpy as np
 
-from .node_trees import add, maths
+from .node_trees import add, maths, vector_maths
 from .ray_start import BOX_INDEX, RayStart, new_material
 
 SOLID_INDEX = 32000
 """The object index of solids meanwhile."""
+_INSIDE = (1, 2, 0)
 
 
 @contextlib.contextmanager
@@ -47,10 +49,13 @@ def _kept(things, name):
 
 
 @contextlib.contextmanager
-def geometry_only(layer: bpy.types.ViewLayer, start: RayStart):
-    """While the block runs, a view layer shows geometry: black, and the back faces of solids not at all."""
+def geometry_only(layer: bpy.types.ViewLayer, start: RayStart, *, with_inside: bool = False):
+    """While the block runs, a view layer shows geometry: black, and the back faces of solids not at all.
+
+    with_inside: these show instead how far their tangent plane is from the rays' origin, see `to_plane`.
+    """
     own = layer.material_override
-    material = new_material("Panorama Geometry of Layers", lambda tree: _shader(tree, start))
+    material = new_material("Panorama Geometry of Layers", lambda tree: _shader(tree, start, with_inside))
     layer.material_override = material
     try:
         yield
@@ -59,14 +64,30 @@ def geometry_only(layer: bpy.types.ViewLayer, start: RayStart):
         bpy.data.materials.remove(material)
 
 
-def _shader(tree, start):
+def to_plane(picture: np.ndarray) -> np.ndarray:
+    """How far (H, W) [m] the tangent planes of the back faces in a picture (H, W, 4) are, NaN elsewhere.
+
+    The colour tells them from the sky and from lamps, which the picture has, too.
+    """
+    red, green, blue = np.moveaxis(picture[..., :3], -1, 0)
+    is_inside = (red > 0) & (np.abs(green - 2 * red) < 1e-3 * red) & (np.abs(blue) < 1e-3 * red)
+    return np.where(is_inside, red, np.float32(np.nan))
+
+
+def _shader(tree, start, with_inside):
     index = add(tree, "ShaderNodeObjectInfo").outputs["Object Index"]
-    backfacing = add(tree, "ShaderNodeNewGeometry").outputs["Backfacing"]
-    is_inside = maths(tree, "MULTIPLY", maths(tree, "COMPARE", index, float(SOLID_INDEX), 0.5), backfacing)
+    geometry = add(tree, "ShaderNodeNewGeometry").outputs
+    is_solid = maths(tree, "COMPARE", index, float(SOLID_INDEX), 0.5)
+    is_inside = maths(tree, "MULTIPLY", is_solid, geometry["Backfacing"])
     black = add(tree, "ShaderNodeEmission", {"Color": (0, 0, 0)})
-    clear = add(tree, "ShaderNodeBsdfTransparent")
-    surface = add(tree, "ShaderNodeMixShader", {0: is_inside, 1: black.outputs[0], 2: clear.outputs[0]})
+    if with_inside:
+        from_origin = vector_maths(tree, "SUBTRACT", geometry["Position"], tuple(start.origin))
+        along_normal = vector_maths(tree, "DOT_PRODUCT", from_origin, geometry["True Normal"])
+        distance = maths(tree, "ABSOLUTE", along_normal)
+        inside = add(tree, "ShaderNodeEmission", {"Color": _INSIDE, "Strength": distance})
+    else:
+        inside = add(tree, "ShaderNodeBsdfTransparent")
+    surface = add(tree, "ShaderNodeMixShader", {0: is_inside, 1: black.outputs[0], 2: inside.outputs[0]})
     is_box = maths(tree, "COMPARE", index, float(BOX_INDEX), 0.5)
-    return add(
-        tree, "ShaderNodeMixShader", {0: is_box, 1: surface.outputs[0], 2: start.shader(tree)}
-    ).outputs[0]
+    worn = add(tree, "ShaderNodeMixShader", {0: is_box, 1: surface.outputs[0], 2: start.shader(tree)})
+    return worn.outputs[0]

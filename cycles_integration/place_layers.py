@@ -6,7 +6,8 @@ import bpy
 
 from ..ibl_toolkit.layers.panorama import LayeredPanorama
 from . import capture, lookup, materials, roles, world
-from .layer_capture import LayerCapture, refuse_other_radius, surfaces_of
+from .layer_capture import surfaces_of
+from .layer_render import LayerCapture, refuse_other_radius
 from .place import place_of, sort_objects
 
 

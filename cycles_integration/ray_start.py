@@ -30,13 +30,17 @@ class RayStart:
     """The distances at which the rays of one camera begin."""
 
     def __init__(self, image: bpy.types.Image, origin: Vector):
-        self._image, self._origin = image, origin
+        self._image, self.origin = image, origin
 
-    def set(self, distances: np.ndarray):
-        """distances: (H, W) [m], of the directions of pixel centres; NaN: that ray is black."""
+    def set(self, distances: np.ndarray, *, inward: bool = False):
+        """distances: (H, W) [m], of the directions of pixel centres; NaN: that ray is black.
+
+        inward: rays go back towards the camera, so that they show the far sides of things.
+        """
         height, width = distances.shape
         pixels = np.zeros((height, width, 4), np.float32)
         pixels[..., 0] = np.where(np.isnan(distances), -1, np.maximum(distances, LEAST_START))[::-1]
+        pixels[..., 1] = -1 if inward else 1
         pixels[..., 3] = 1
         self._image.pixels.foreach_set(pixels.ravel())
         self._image.update()
@@ -60,15 +64,11 @@ class RayStart:
             image=self._image,
             interpolation="Closest",
         )
-        distance = add(tree, "ShaderNodeSeparateXYZ", {"Vector": texture.outputs["Color"]}).outputs[0]
-        way = vector_maths(
-            tree,
-            "MULTIPLY",
-            direction,
-            add(tree, "ShaderNodeCombineXYZ", dict.fromkeys(range(3), distance)).outputs[0],
-        )
-        position = vector_maths(tree, "ADD", way, tuple(self._origin))
-        onward = add(tree, "ShaderNodeBsdfRayPortal", {"Position": position, "Direction": direction})
+        distance, sense, _ = add(tree, "ShaderNodeSeparateXYZ", {"Vector": texture.outputs["Color"]}).outputs
+        way = vector_maths(tree, "MULTIPLY", direction, _grey(tree, distance))
+        position = vector_maths(tree, "ADD", way, tuple(self.origin))
+        sent = vector_maths(tree, "MULTIPLY", direction, _grey(tree, sense))
+        onward = add(tree, "ShaderNodeBsdfRayPortal", {"Position": position, "Direction": sent})
         black = add(tree, "ShaderNodeEmission", {"Color": (0, 0, 0)})
         is_ended = maths(tree, "LESS_THAN", distance, 0.0)
         mixed = add(tree, "ShaderNodeMixShader", {0: is_ended, 1: onward.outputs[0], 2: black.outputs[0]})
@@ -102,6 +102,11 @@ def ray_start(scene: bpy.types.Scene, world_from_panorama: Matrix, width: int):
         bpy.data.meshes.remove(mesh)  # with the box
         bpy.data.materials.remove(material)
         bpy.data.images.remove(image)
+
+
+def _grey(tree, number):
+    """The vector with this number three times."""
+    return add(tree, "ShaderNodeCombineXYZ", dict.fromkeys(range(3), number)).outputs[0]
 
 
 def new_material(name: str, shader) -> bpy.types.Material:

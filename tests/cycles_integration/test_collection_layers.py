@@ -9,7 +9,7 @@ import small_scenes as small  # noqa: E402
 from mathutils import Matrix  # noqa: E402
 
 from expanded_panoramas.cycles_integration.collection_layers import capture_collections  # noqa: E402
-from expanded_panoramas.cycles_integration.layer_capture import LayerCapture  # noqa: E402
+from expanded_panoramas.cycles_integration.layer_render import LayerCapture  # noqa: E402
 
 TINY = LayerCapture(64, samples=1)
 EYE = (0, 0, 1)

@@ -8,7 +8,8 @@ bpy = pytest.importorskip("bpy")
 import small_scenes as small  # noqa: E402
 from mathutils import Matrix, Vector  # noqa: E402
 
-from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces  # noqa: E402
+from expanded_panoramas.cycles_integration.layer_capture import capture_surfaces  # noqa: E402
+from expanded_panoramas.cycles_integration.layer_render import LayerCapture  # noqa: E402
 from expanded_panoramas.cycles_integration.solids import closed_solids  # noqa: E402
 from expanded_panoramas.ibl_toolkit import equirectangular  # noqa: E402
 
@@ -24,6 +25,11 @@ LEVEL = Matrix.Translation(ORIGIN)
 WALL, SIDE = (0.2, 0.5, 0.8), (0.9, 0.3, 0.1)
 METRES = 2e-3
 DIRECTIONS = equirectangular.pixel_directions(WIDTH, WIDTH // 2).astype(np.float64)
+
+
+def surfaces(*arguments):
+    """The layers of `capture_surfaces` but for the backs of solids."""
+    return [layer for layer in capture_surfaces(*arguments).layers if "back" not in layer.name]
 
 
 def add_box(scene, corners, material, *, inward=False):
@@ -70,7 +76,7 @@ def furnished(scene):
 
 def test_the_second_surface_is_the_wall_behind_with_its_own_colour(furnished):
     panorama = capture_surfaces(furnished, LEVEL, RADIUS, TINY)
-    first, second = panorama.layers
+    first, _, second = panorama.layers
     front = np.minimum(box_depth(DIRECTIONS), room_depth(DIRECTIONS))
     assert first.mask.all()
     np.testing.assert_allclose(first.depth, front, atol=METRES)
@@ -85,7 +91,7 @@ def test_the_second_surface_is_the_wall_behind_with_its_own_colour(furnished):
 
 def test_all_that_a_view_in_the_radius_sees_is_in_a_layer_and_not_much_else(furnished):
     width = 256
-    _, second = capture_surfaces(furnished, LEVEL, RADIUS, LayerCapture(width, samples=1)).layers
+    _, second = surfaces(furnished, LEVEL, RADIUS, LayerCapture(width, samples=1))
     uncovered = np.zeros((width // 2, width), bool)
     rng = np.random.default_rng(5)
     for _ in range(100):
@@ -107,17 +113,36 @@ def test_all_that_a_view_in_the_radius_sees_is_in_a_layer_and_not_much_else(furn
 def test_a_solid_has_no_inside_and_what_it_stands_on_goes_on_beneath(scene):
     foot = ROOM[0, 2]
     add_box(scene, np.array([[1, -0.5, foot], [1.6, 0.7, 0.3]]), small.material(EMISSION))
-    layers = capture_surfaces(scene, LEVEL, 1.0, LayerCapture(WIDTH, samples=1, most=5)).layers
+    layers = surfaces(scene, LEVEL, 1.0, LayerCapture(WIDTH, samples=1, most=5))
     assert len(layers) == 2
     seen = layers[1].mask
     np.testing.assert_allclose(layers[1].depth[seen], room_depth(DIRECTIONS)[seen], atol=METRES)
+
+
+def test_the_far_side_of_a_solid_that_a_view_sees_is_in_a_layer_as_it_is_lit_outside(scene):
+    centre, size, width, radius = np.array([2.0, 0, 0]), 0.8, 128, 0.5
+    ball = small.add_ball(scene, small.material(small.DIFFUSE), size, Vector(ORIGIN) + Vector(centre))
+    options = LayerCapture(width, samples=4)
+    layers = {layer.name: layer for layer in capture_surfaces(scene, LEVEL, radius, options).layers}
+    back = layers["back of surface 1"]
+    directions = equirectangular.pixel_directions(width, width // 2).astype(float)
+    along = directions @ centre
+    half = np.sqrt(np.maximum(along**2 - centre @ centre + size**2, 0))
+    far_side = np.where((half > 0) & (along > 0), along + half, np.nan)
+    normal = (far_side[..., None] * directions - centre) / size
+    to_plane = np.abs(np.einsum("ijk,ijk->ij", far_side[..., None] * directions, normal))
+    assert back.mask[to_plane < radius].mean() > 0.98
+    assert not back.mask[~(to_plane < 1.4 * radius)].any()
+    np.testing.assert_allclose(back.depth[back.mask], far_side[back.mask], rtol=0.01)
+    assert np.median(back.radiance[back.mask]) > 0.15  # the walls light it; its inside is dark
+    assert ball.visible_camera
 
 
 def test_open_surfaces_are_seen_from_behind(scene):
     for distance in (1.0, 2.0):
         place = Vector(ORIGIN) + Vector((distance, 0, 0))
         small.add_plane(scene, small.material(EMISSION), 0.5, place, normal=(1, 0, 0))
-    layers = capture_surfaces(scene, LEVEL, 0.9, TINY).layers
+    layers = surfaces(scene, LEVEL, 0.9, TINY)
     assert [round(float(np.nanmin(layer.depth)), 1) for layer in layers[1:]] == [2.0, 3.0]
 
 
@@ -129,7 +154,7 @@ def test_a_hidden_surface_lies_in_the_shadow_of_what_hides_it(fresh_blend):
     lamp.data.energy, lamp.data.shadow_soft_size = 100, 0
     lamp.location = (0, 0, 1.5)  # where the panorama is: all it cannot see is dark
     scene.collection.objects.link(lamp)
-    first, second = capture_surfaces(scene, Matrix.Translation((0, 0, 1.5)), 0.5, TINY).layers
+    first, second = surfaces(scene, Matrix.Translation((0, 0, 1.5)), 0.5, TINY)
     hidden = second.mask & np.isfinite(second.depth)
     assert hidden.sum() > 12
     assert first.radiance[-8:].min() > 0.1  # the floor below
@@ -142,7 +167,7 @@ def test_sky_lies_at_infinity_before_and_behind(fresh_blend):
     scene.world.use_nodes = True
     scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
     small.add_ball(scene, small.material(EMISSION), 0.4, (2, 0, 0))
-    first, second = capture_surfaces(scene, Matrix(), 0.3, TINY).layers
+    first, second = surfaces(scene, Matrix(), 0.3, TINY)
     assert first.mask.all()
     assert np.isinf(first.depth[:, 0]).all()
     assert np.isinf(second.depth[second.mask]).all()
@@ -152,7 +177,7 @@ def test_sky_lies_at_infinity_before_and_behind(fresh_blend):
 def test_colours_of_edges_are_not_mixed(furnished):
     fine = LayerCapture(WIDTH, samples=9)
     for layer in capture_surfaces(furnished, LEVEL, RADIUS, fine).layers:
-        is_box = np.isclose(layer.depth, box_depth(DIRECTIONS), atol=METRES)
+        is_box = np.isclose(layer.depth, box_depth(DIRECTIONS), atol=METRES) | ("back" in layer.name)
         for pixels, colour in ((layer.mask & is_box, SIDE), (layer.mask & ~is_box, WALL)):
             np.testing.assert_allclose(
                 layer.radiance[pixels], np.broadcast_to(colour, (pixels.sum(), 3)), rtol=1e-3
@@ -196,7 +221,7 @@ def test_linked_and_instanced_objects_are_peeled_like_others(fresh_blend, tmp_pa
     instance = bpy.data.objects.new("instance", None)
     instance.instance_type, instance.instance_collection = "COLLECTION", ours.collections[0]
     scene.collection.objects.link(instance)
-    first, second = capture_surfaces(scene, LEVEL, RADIUS, TINY).layers
+    first, second = surfaces(scene, LEVEL, RADIUS, TINY)
     is_box = np.isfinite(box_depth(DIRECTIONS))
     np.testing.assert_allclose(first.depth[is_box], box_depth(DIRECTIONS)[is_box], atol=METRES)
     np.testing.assert_allclose(second.depth[second.mask], room_depth(DIRECTIONS)[second.mask], atol=METRES)
