@@ -42,3 +42,19 @@ def _wall_colour(points):
 def _object_colour(points):
     x, y, z = np.moveaxis(points, -1, 0)
     return np.array([0.7, 0.1, 0.08]) * (1 + 0.4 * np.sin(9 * (x + y + z)))[..., None]
+
+
+def scanned_room(eyes, count, seed=1):
+    """Points (n, 3) [m] and colours (n, 3) that scanners at `eyes` see, `count` rays from each at random."""
+    rng = np.random.default_rng(seed)
+    points, colours = [], []
+    for eye in map(np.array, eyes):
+        rays = rng.normal(size=(count, 3))
+        wall = np.min((np.where(rays > 0, HIGH, LOW) - eye) / rays, axis=1)
+        one, other = (OBJECT_LOW - eye) / rays, (OBJECT_HIGH - eye) / rays
+        enter, leave = np.minimum(one, other).max(axis=1), np.maximum(one, other).min(axis=1)
+        hit = (enter < leave) & (enter > 0)
+        met = eye + rays * np.where(hit, enter, wall)[:, None]
+        points.append(met)
+        colours.append(np.where(hit[:, None], _object_colour(met), _wall_colour(met)))
+    return np.concatenate(points), np.concatenate(colours)

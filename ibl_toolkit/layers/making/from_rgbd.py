@@ -7,16 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..panorama import Layer, LayeredPanorama, refuse_other_place
-from .discontinuities import creases, cuts, nearness
+from ..panorama import LayeredPanorama, refuse_other_place
+from .discontinuities import nearness
 from .grid import PixelGrid, mapping_of_size
-from .inpainting import filled_radiance
-from .levels import levels
-from .planes import region_planes
-from .regions import regions
-from .strips import hidden_strip
-
-_EDGE_PX = 1  # beside an edge colours are mixed: those are kept, but not continued
+from .splitting import split_layers
 
 
 def layers_from_rgbd(
@@ -46,45 +40,9 @@ def layers_from_rgbd(
     _refuse_other_pictures(radiance, depth, count)
     height, width = depth.shape
     grid = PixelGrid(mapping_of_size(width, height), width, height)
-    near = grid.flat(nearness(depth))
-    jumps = cuts(grid, near, radius)
-    number, labels = regions(grid, near, jumps, creases(grid, near), radius)
-    level = levels(number, labels, grid, near, jumps, count)[labels]
-    planes, flat = region_planes(grid, near, number, labels, radius)
-    mixed = _beside(grid, jumps)
     colours = grid.flat(np.asarray(radiance, dtype=np.float32))
-    layers = []
-    for this in range(int(level.max()) + 1):
-        strip = hidden_strip(grid, near, labels, level, this, planes, flat, radius)
-        values = _layer_values(grid, colours, near, labels, level == this, mixed, strip)
-        name = f"front {this}" if this else "background"
-        layers.append(Layer(name, grid.mapping, {k: grid.image(v) for k, v in values.items()}))
-    return LayeredPanorama(tuple(layers), world_from_panorama, np.asarray(origin, np.float64), radius)
-
-
-def _layer_values(grid, colours, near, labels, visible, mixed, strip):
-    """Radiance (size, 3) and depth (size,) of a layer: what is visible of it and its strip."""
-    with np.errstate(divide="ignore"):
-        depth = np.where(visible, 1 / near, np.float32(np.nan))
-        depth[strip.pixels] = 1 / strip.near
-    radiance = np.where(visible[:, None], colours, np.float32(0))
-    if len(strip.pixels):
-        region = np.where(visible, labels, -1)
-        region[strip.pixels] = strip.labels
-        source = visible & ~mixed
-        unsure = np.flatnonzero(visible & mixed)
-        pixels = np.concatenate([strip.pixels, unsure])
-        filled = filled_radiance(grid, colours, source if source.any() else visible, pixels, region)
-        radiance[strip.pixels] = filled[: len(strip.pixels)]
-    return {"radiance": radiance, "depth": depth}
-
-
-def _beside(grid, jumps):
-    """Pixels (size,) so near to an edge that their colours may be mixed with what is beyond it."""
-    mixed = jumps.any(axis=0)
-    for _ in range(_EDGE_PX):
-        mixed = mixed | (mixed[grid.neighbours] & ~jumps).any(axis=0)
-    return mixed
+    layers = split_layers(grid, grid.flat(nearness(depth)), colours, radius, count)
+    return LayeredPanorama(layers, world_from_panorama, np.asarray(origin, np.float64), radius)
 
 
 def _refuse_other_pictures(radiance, depth, count):

@@ -16,7 +16,7 @@ _STEPS = 60  # of conjugate gradients, from a start that is right along the edge
 _ENOUGH = 1e-3  # largest residual, in log radiance
 
 
-def filled_radiance(grid: PixelGrid, radiance, source, pixels, labels, same=True) -> np.ndarray:
+def filled_radiance(grid: PixelGrid, radiance, source, pixels, labels) -> np.ndarray:
     """Radiance (n, 3) of pixels (n,), float32, from that of the pixels of `source` (size,) bool.
 
     radiance: (size, 3). labels: (size,) regions, of source and of pixels: colours go from pixel to pixel of

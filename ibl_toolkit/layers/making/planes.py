@@ -67,7 +67,7 @@ def _block_planes(grid, near, labels, starts, reach):
     here = near[starts].astype(np.float64)
     w = grid.directions[pixels].astype(np.float64)
     along = np.stack([np.einsum("nkc,nc->nk", w, axis) for axis in (middle, across, up)], axis=2)
-    change = near[pixels] - here[:, None] * along[..., 0]
+    change = np.where(weight > 0, near[pixels] - here[:, None] * along[..., 0], 0)
     # The plane goes through the start itself: two slopes are left.
     slopes = along[..., 1:]
     squares = np.einsum("nk,nki,nkj->nij", weight, slopes, slopes)

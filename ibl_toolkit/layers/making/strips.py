@@ -20,17 +20,25 @@ _ROUNDS = 8
 
 @dataclass(frozen=True)
 class Strip:
-    """Hidden pixels (n,) of a layer, their 1/depth (n,), and the regions (n,) they continue."""
+    """Hidden pixels (n,) of a layer, their 1/depth (n,), and the regions (n,) they continue.
+
+    seen: (n,) whether that is known, and not continued; there the region is -1.
+    """
 
     pixels: np.ndarray
     near: np.ndarray
     labels: np.ndarray
+    seen: np.ndarray
 
 
-def hidden_strip(grid: PixelGrid, near, labels, level, this: int, planes, flat, radius: float) -> Strip:
+def hidden_strip(
+    grid: PixelGrid, near, labels, level, this: int, planes, flat, radius: float, known=None
+) -> Strip:
     """What layer `this` has behind those before it, as wide as `parallax` says.
 
     near, labels, level: (size,) 1/depth, region and level of pixels. planes, flat: of `region_planes`.
+    known: (size,) 1/depth of what is known to be behind, NaN where nothing is, or None: it is taken wherever
+    a layer before `this` hides it, however far from an edge.
     A region is continued by no more than its own width, the root of its area: a chink tells little.
 
     Depth goes on as it was, 1/depth linear: a flat region by its plane, others by that of the edge's
@@ -47,8 +55,17 @@ def hidden_strip(grid: PixelGrid, near, labels, level, this: int, planes, flat, 
     start = behind[number[pixels]]
     found, regions = _continued(grid, near, labels, pixels, start, reach[number[pixels]], planes, flat)
     found = np.minimum(np.maximum(found, _LEAST_SHARE * near[start]), near[pixels])
-    keep = _without_jumps(grid, near, level == this, pixels, found, left[pixels], radius)
-    return Strip(pixels[keep], found[keep], regions[keep])
+    rest, seen = left[pixels], np.zeros(len(pixels), dtype=bool)
+    if known is not None:
+        hides = allowed & (known < near)
+        own = ~hides[pixels]
+        there = np.flatnonzero(hides)
+        pixels, found = np.append(pixels[own], there), np.append(found[own], known[there])
+        regions = np.append(regions[own], np.full(len(there), -1))
+        rest = np.append(rest[own], np.full(len(there), np.float32(np.pi)))
+        seen = np.arange(len(pixels)) >= np.count_nonzero(own)
+    keep = _without_jumps(grid, near, level == this, pixels, found, rest, radius)
+    return Strip(pixels[keep], found[keep], regions[keep], seen[keep])
 
 
 def _continued(grid, near, labels, pixels, start, reach, planes, flat):
