@@ -23,7 +23,7 @@ from .parallax import pixel_angle
 
 _STEPS = (16, 4, 1)  # of the lattices of pixels that are looked at, one after the other
 _FEWEST = 2000  # pixels of the domain in a lattice, or it is skipped
-_WORST = 0.5  # vertices are inserted where the error is above this share of the largest one
+_WORST = 0.5  # at first vertices are inserted where the error is above this share of the largest one
 _MOST = 2_000_000
 
 
@@ -93,20 +93,22 @@ def _refined(mesh, lattice, tolerance, is_first):
         over = np.flatnonzero(lattice.errors > tolerance)
         if not len(over):
             return
-        worst = _worst_of_each(over, lattice)
+        worst = _worst_of_each(over, lattice, _WORST if is_first else 0)
         triangles = lattice.triangles[worst]
         changed = mesh.insert(triangles, mesh.worst_near(lattice.pixels[worst], triangles, lattice.step // 2))
-        yield len(changed)
-        active = np.flatnonzero(changed[lattice.triangles])
+        yield len(mesh.sphere.triangles)
+        has_changed = np.zeros(len(mesh.sphere.triangles), dtype=bool)
+        has_changed[changed] = True
+        active = np.flatnonzero(has_changed[lattice.triangles])
 
 
-def _worst_of_each(over, lattice):
-    """Of the lattice's pixels ``over`` (n,) the worst of each triangle, if it is bad among all."""
+def _worst_of_each(over, lattice, share):
+    """Of the lattice's pixels ``over`` (n,) the worst of each triangle, if above a share of the worst."""
     errors = lattice.errors[over]
     order = np.lexsort((errors, lattice.triangles[over]))
     triangles = lattice.triangles[over[order]]
     last = np.append(triangles[1:] != triangles[:-1], True)
-    return over[order[last & (errors[order] >= _WORST * errors.max())]]
+    return over[order[last & (errors[order] >= share * errors.max())]]
 
 
 def _over_domain(mesh, lattice):

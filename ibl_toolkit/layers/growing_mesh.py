@@ -16,7 +16,7 @@ class Lattice:
         rows, columns = pixels.lattice(step)
         inside = pixels.inside[np.ix_(rows, columns)]
         self._shape, self._inside = inside.shape, inside
-        self.pixels = (rows[:, None] * pixels.width + columns).astype(np.int32)[inside]
+        self.pixels = np.add.outer(rows * pixels.width, columns, dtype=np.int32)[inside]
         self.triangles = np.zeros(len(self.pixels), dtype=np.int32)
         self.errors = np.zeros(len(self.pixels), dtype=np.float32)
         if coarser is not None:
@@ -50,17 +50,28 @@ class GrowingMesh:
         self._is_vertex = np.zeros(
             pixels.inside.size, dtype=bool
         )  # so none is added twice, whatever rounding
-        self._prepare()
+        self.normals, self.duals = (np.zeros((0, 3, 3)) for _ in range(2))
+        self.planes = np.zeros((0, 3))
+        self._prepare(np.arange(len(self.sphere.triangles)))
 
-    def _prepare(self):
-        """Of each triangle: normals to its edges, its dual basis, and how near its plane is, as a vector."""
-        corners = self.sphere.directions[self.sphere.triangles]
-        self.normals = self.sphere.normals()
-        self.duals = self.normals / np.einsum("nik,nik->ni", corners, self.normals)[..., None]
-        self._planes()
+    def _prepare(self, changed):
+        """Of triangles: normals to their edges, the bases dual to their corners, and their planes.
 
-    def _planes(self):
-        self.planes = np.einsum("ni,nij->nj", self.near[self.sphere.triangles], self.duals)
+        A plane is the vector whose product with a direction is how near it is there.
+        """
+        new = len(self.sphere.triangles) - len(self.planes)
+        self.normals, self.duals, self.planes = (
+            np.concatenate([known, np.empty((new, *known.shape[1:]))])
+            for known in (self.normals, self.duals, self.planes)
+        )
+        corners = self.sphere.directions[self.sphere.triangles[changed]]
+        normals = self.normals[changed] = self.sphere.normals(changed)
+        self.duals[changed] = normals / np.einsum("nik,nik->ni", corners, normals)[..., None]
+        self._put_planes(changed)
+
+    def _put_planes(self, changed):
+        near = self.near[self.sphere.triangles[changed]]
+        self.planes[changed] = np.einsum("ni,nij->nj", near, self.duals[changed])
 
     def measure(self, lattice, active):
         """Bring triangles and errors of a lattice's pixels up to date: of those with numbers ``active``."""
@@ -100,17 +111,16 @@ class GrowingMesh:
         return windows[np.arange(len(pixels)), np.where(there, errors, -1).argmax(axis=1)]
 
     def insert(self, triangles, pixels):
-        """Add pixels (n,) as vertices where they lie in triangles (n,); boolean (T,): which have changed."""
+        """Add pixels (n,) as vertices where they lie in triangles (n,); the triangles that changed."""
         unique = np.unique(pixels, return_index=True)[1]
         triangles, pixels = triangles[unique], pixels[unique]
         directions = self.pixels.directions(pixels)
         chosen = self.sphere.insertable(triangles, directions)
-        changed = np.zeros(len(self.sphere.triangles) + 2 * np.count_nonzero(chosen), dtype=bool)
-        changed[self.sphere.insert(triangles[chosen], directions[chosen])] = True
+        changed = self.sphere.insert(triangles[chosen], directions[chosen])
         self._is_vertex[pixels[chosen]] = True
         self.near = np.concatenate([self.near, self.pixels.near(pixels[chosen])])
         self.is_free = np.concatenate([self.is_free, np.zeros(np.count_nonzero(chosen), dtype=bool)])
-        self._prepare()
+        self._prepare(changed)
         return changed
 
     def fit_free(self, lattice):
@@ -126,7 +136,7 @@ class GrowingMesh:
         shares = np.concatenate([shares, weight * np.eye(len(free))])
         rest = np.concatenate([rest, np.full(len(free), weight * np.median(near))])
         self.near[free] = np.clip(np.linalg.lstsq(shares, rest, rcond=None)[0], near.min() / 2, near.max())
-        self._planes()
+        self._put_planes(np.arange(len(self.planes)))
 
     def _told_of(self, free, lattice, near):
         """Of the pixels in a free vertex's triangles: what share (n, free) each of these vertices has in how

@@ -45,7 +45,9 @@ class MapPixels:
 
     def lattice(self, step: int) -> tuple[np.ndarray, np.ndarray]:
         """Every ``step``-th row (n,) and column (m,), beginning in the middle of a step."""
-        return tuple(np.arange(step // 2, length, step) for length in (self.height, self.width))
+        return tuple(
+            np.arange(step // 2, length, step, dtype=np.int32) for length in (self.height, self.width)
+        )
 
     def around(self, pixels: np.ndarray, reach: int) -> np.ndarray:
         """Pixels (n, (2 reach + 1)^2) of the map round each of (n,): beyond the sides, those of the other."""

@@ -42,12 +42,12 @@ class SphereTriangulation:
         ends = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
         self.twins = np.argmax((ends[:, None] == ends[:, ::-1]).all(axis=2), axis=1)
 
-    def normals(self):
-        """(T, 3, 3), the unit normals, inwards, of the planes through the origin and each edge.
+    def normals(self, triangles=slice(None)):
+        """Unit normals (n, 3, 3), inwards, of the planes through the origin and the edges of triangles (n,).
 
         Row k belongs to the edge opposite to corner k.
         """
-        return _normals(self.directions[self.triangles])
+        return _normals(self.directions[self.triangles[triangles]])
 
     def locate(self, points, triangles, normals):
         """Triangles (n,) in which points (n, 3) lie, found by walking from ``triangles`` (n,).
@@ -70,7 +70,7 @@ class SphereTriangulation:
 
         Of points on an edge only one can be, or triangles without area might lie over one another.
         """
-        normals = _normals(self.directions[self.triangles[triangles]])
+        normals = self.normals(triangles)
         sides = np.einsum("nij,nj->ni", normals, points)
         corner = sides.argmin(axis=1)
         edge = 3 * triangles + (corner + 1) % 3
