@@ -12,8 +12,8 @@ from ..ibl_toolkit.images import (
     write_jpeg,
     write_png,
 )
-from ..ibl_toolkit.layers.export.pieces import BEST, TEXTURE_ERROR_PX
-from ..ibl_toolkit.layers.export.writing import FORMATS, POINTS, SURFACES, export_layers
+from ..ibl_toolkit.layers.export.pieces import TEXTURE_ERROR_PX
+from ..ibl_toolkit.layers.export.writing import FORMATS, SURFACES, export_layers
 from ..ibl_toolkit.layers.flattened import flattened
 from ..ibl_toolkit.layers.storage import read_layers
 from ..ibl_toolkit.layers.xml_file import NAME
@@ -45,7 +45,11 @@ class ExportOptions:
 def add_options(parser):
     """Add the verb's own options."""
     add = parser.add_argument
-    add("--surface", choices=SURFACES, help=f"of each layer (default: {BEST}; of a .ply {POINTS})")
+    add(
+        "--surface",
+        choices=SURFACES,
+        help=f"of each layer (default: {', '.join(map(' '.join, FORMATS.items()))})",
+    )
     add("--exposure", metavar="E", type=positive, help="what radiance is multiplied with (mid grey)")
     add("--far", metavar="R", type=positive, help="radius of what stands for infinity [m] (far enough)")
     add(

@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..ibl_toolkit import cube_map
-from ..ibl_toolkit.layers.export.pieces import BEST, MESHES, checked_far, leaves_domain, parts_of
+from ..ibl_toolkit.layers.export.pieces import MESHES, checked_far, leaves_domain, parts_of
 from ..ibl_toolkit.layers.export.texture import spread
 from ..ibl_toolkit.layers.panorama import CUBE_MAP, Layer, LayeredPanorama
 from . import blender_images
@@ -39,7 +39,7 @@ class LayerObjects:
 def add_layers(
     scene: bpy.types.Scene,
     panorama: LayeredPanorama,
-    mesh_of: Callable = MESHES[BEST],
+    mesh_of: Callable = MESHES["quadtree"],
     far: float | None = None,
 ) -> LayerObjects:
     """Add a panorama's layers to the scene, in a collection of their own.

@@ -8,7 +8,7 @@ from layered_box import ORIGIN, RADIUS, ROTATION, layered_box, radiance_in
 
 from expanded_panoramas.cycles_integration import layer_objects
 from expanded_panoramas.ibl_toolkit import equirectangular
-from expanded_panoramas.ibl_toolkit.layers.export.pieces import BEST, MESHES
+from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES
 from expanded_panoramas.ibl_toolkit.layers.flattened import flattened
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
 
@@ -112,7 +112,7 @@ def test_a_mesh_beyond_the_domain_is_cut_by_its_mask(fresh_blend, tmp_path):
         points, triangles = sphere.points / 2, sphere.triangles
 
     def mesh_of(part, radius):
-        return Half if part.name == "objects" else MESHES[BEST](part, radius)
+        return Half if part.name == "objects" else MESHES["quadtree"](part, radius)
 
     made = layer_objects.add_layers(fresh_blend.context.scene, panorama, mesh_of)
     assert len(made.objects[1].data.polygons) == len(sphere.triangles)

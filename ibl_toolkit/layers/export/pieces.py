@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..bounded_mesh import bounded_mesh
 from ..layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
 from ..panorama import Layer, LayeredPanorama
 from ..rendered_view import sampled
@@ -15,11 +16,11 @@ from .texture import Texture, texture_of
 from .texture_coordinates import shared_vertices
 
 MESHES: dict[str, Callable] = {
+    "mesh": lambda layer, radius: bounded_mesh(layer, radius),
     "quadtree": lambda layer, radius: quadtree_mesh(layer, quadtree_of(layer)),
     "grid": lambda layer, radius: uniform_mesh(layer),
 }
 """Surfaces of a layer by their names, for panoramas that are looked at within a radius [m]."""
-BEST = "quadtree"
 
 TEXTURE_ERROR_PX = 0.5
 AT_INFINITY = " at infinity"
@@ -51,7 +52,7 @@ class Piece:
 def pieces_of(
     panorama: LayeredPanorama,
     exposure: float,
-    mesh_of: Callable = MESHES[BEST],
+    mesh_of: Callable = MESHES["quadtree"],
     far: float | None = None,
     texture_error_px: float = TEXTURE_ERROR_PX,
 ) -> list[Piece]:
@@ -118,13 +119,19 @@ def _farthest(panorama):
 
 def _piece(part, mesh, texture, error_px):
     points, triangles = refined(mesh.points, mesh.triangles.astype(np.int64), texture.chart, error_px)
-    point, uv, shared = shared_vertices(triangles, texture.chart.uv(points[triangles]))
+    uv = texture.chart.uv(points[triangles])
+    masked = leaves_domain(part, points[triangles])
+    if masked:
+        texture = texture.cut_to(part)
+        seen = texture.is_seen_on(uv)
+        triangles, uv = triangles[seen], uv[seen]
+    point, uv, shared = shared_vertices(triangles, uv)
     return Piece(
         part.name,
         points[point].astype(np.float32),
         uv.astype(np.float32),
         shared.astype(np.uint32),
         texture,
-        masked=leaves_domain(part, points[triangles]),
+        masked,
         two_sided=not part.mask.all(),
     )

@@ -15,6 +15,7 @@ import numpy as np
 from ...images.png import srgb_codes
 from ..panorama import CUBE_MAP, Layer
 from ..rendered_view import sampled
+from ..summed_area import rectangle_sums, summed_area_table
 from .texture_coordinates import CubeChart, EquirectangularChart, chart_of
 
 BORDER = 4
@@ -24,7 +25,7 @@ _SPREAD = 16  # [px] beyond the domain
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """pixels: (h, w, 4) uint8, sRGB and the domain as alpha, top row first. chart: where corners lie on
+    """pixels: (h, w, 4) uint8, sRGB and alpha, top row first. chart: where the corners of triangles lie on
     it."""
 
     name: str
@@ -39,9 +40,33 @@ class Texture:
             self._files[with_alpha] = cv2.imencode(".png", cv2.cvtColor(self.pixels, code))[1].tobytes()
         return self._files[with_alpha]
 
+    def cut_to(self, part: Layer) -> Texture:
+        """The same with the domain of a part of the layer as alpha."""
+        pixels = self.pixels.copy()
+        alpha = part.mask.astype(np.float32)
+        if part.mapping == CUBE_MAP:
+            alpha = sampled(part, alpha, self.chart.texel_directions())
+        pixels[..., 3] = np.round(alpha * 255)
+        return Texture(part.name, pixels, self.chart)
+
+    def is_seen_on(self, uv: np.ndarray) -> np.ndarray:
+        """Whether there may be something of the domain on triangles with corners uv (T, 3, 2) -> (T,) bool.
+
+        None of those that are left out shows a texel that isn't transparent.
+        """
+        height, width = self.pixels.shape[:2]
+        opaque = self.pixels[..., 3] > 0
+        table = summed_area_table(np.concatenate([opaque, opaque], axis=1)[None])  # u may exceed 1
+        low = np.floor(uv.min(axis=1) * (width, height)).astype(np.int64) - 1
+        high = np.ceil(uv.max(axis=1) * (width, height)).astype(np.int64) + 1
+        across = (low[:, 0] < 0) * width  # the texel before the first is the last
+        x0, x1 = low[:, 0] + across, np.minimum(high[:, 0] + across, 2 * width)
+        y0, y1 = low[:, 1].clip(0), high[:, 1].clip(None, height)
+        return rectangle_sums(table, x0, y0, x1, y1, np.zeros(len(uv), dtype=np.int64)) > 0
+
 
 def texture_of(layer: Layer, exposure: float) -> Texture:
-    """The layer's radiance times `exposure`, clipped to 0 to 1 and encoded as sRGB.
+    """The layer's radiance times `exposure`, clipped to 0 to 1 and encoded as sRGB; opaque.
 
     Raises: ValueError for a layer without radiance, or with one that is NaN or infinite in its domain.
     """
@@ -51,14 +76,11 @@ def texture_of(layer: Layer, exposure: float) -> Texture:
     if not np.isfinite(layer.radiance[inside]).all():
         raise ValueError(f"{layer} has radiance that is NaN or infinite in its domain")
     linear = spread(layer.radiance, inside, layer.mapping)
-    alpha = inside.astype(np.float32)
     chart = chart_of(layer.mapping, layer.size[0], BORDER)
     if layer.mapping == CUBE_MAP:
-        directions = chart.texel_directions()
-        linear, alpha = sampled(layer, linear, directions), sampled(layer, alpha, directions)
-    pixels = np.empty((*alpha.shape, 4), dtype=np.uint8)
+        linear = sampled(layer, linear, chart.texel_directions())
+    pixels = np.full((*linear.shape[:2], 4), 255, dtype=np.uint8)
     pixels[..., :3] = srgb_codes(linear, exposure)
-    pixels[..., 3] = np.round(alpha * 255)
     return Texture(layer.name, pixels, chart)
 
 

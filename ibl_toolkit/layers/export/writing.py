@@ -11,12 +11,14 @@ from ...images import exposure_for
 from ..panorama import LayeredPanorama
 from .gltf import write_glb
 from .obj import write_obj
-from .pieces import BEST, MESHES, TEXTURE_ERROR_PX, pieces_of
+from .pieces import MESHES, TEXTURE_ERROR_PX, pieces_of
 from .ply import bytes_of, points_of_piece, points_of_pixels, write_ply
 
 POINTS = "points"
 SURFACES = (*MESHES, POINTS)
-FORMATS = (".glb", ".obj", ".ply")
+FORMATS = {".glb": "mesh", ".obj": "quadtree", ".ply": POINTS}
+"""By their suffixes, and the surface of each: that with the fewest triangles needs transparency, which only
+the first of them is sure to have."""
 _ROWS = 512
 
 
@@ -50,24 +52,26 @@ def export_layers(
 ) -> Exported:
     """Write the layers as `path`: .glb, .obj (with .mtl and textures beside it), or .ply.
 
-    surface: of SURFACES; if None, BEST, in a .ply file, whose colours are those of vertices, "points".
+    surface: of SURFACES; that of FORMATS if None.
     exposure: what radiance is multiplied with before it is clipped to 8 bits; if None, so that the median of
     all layers becomes mid grey. far: radius [m] of the sphere that stands for infinity, see
     `pieces.far_radius`. texture_error_px: by how many pixels a texture may be off in the middle of a
     triangle's side.
 
-    Raises: ValueError for another suffix or surface, points in a file that isn't .ply, an exposure that is
-    not finite and above 0, and what `pieces_of` refuses; OSError.
+    Raises: ValueError for another suffix or surface, points in a file that isn't .ply, a surface in a .ply
+    that goes beyond a layer's domain, an exposure that is not finite and above 0, and what `pieces_of`
+    refuses; OSError.
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    surface = surface or (POINTS if suffix == ".ply" else BEST)
     _refuse_other(path, suffix, surface, exposure)
+    surface = surface or FORMATS[suffix]
     exposure = exposure or exposure_of(panorama)
     if surface == POINTS:
         return _write_ply(path, panorama, points_of_pixels(panorama, exposure, far), exposure)
     pieces = pieces_of(panorama, exposure, MESHES[surface], far, texture_error_px)
     if suffix == ".ply":
+        _refuse_masked(path, pieces, surface)
         return _write_ply(path, panorama, [points_of_piece(piece) for piece in pieces], exposure)
     if suffix == ".obj":
         files, sizes = write_obj(path, panorama, pieces)
@@ -111,9 +115,19 @@ def _first_uses(pieces):
 def _refuse_other(path, suffix, surface, exposure):
     if suffix not in FORMATS:
         raise ValueError(f"{path}: must end in {', '.join(FORMATS)}")
-    if surface not in SURFACES:
+    if surface is not None and surface not in SURFACES:
         raise ValueError(f"surface '{surface}' must be one of {', '.join(SURFACES)}")
     if surface == POINTS and suffix != ".ply":
         raise ValueError(f"{path}: points can be written as .ply only, not as {suffix}")
     if exposure is not None and not 0 < exposure < np.inf:
         raise ValueError(f"exposure {exposure} must be finite and above 0")
+
+
+def _refuse_masked(path, pieces, surface):
+    masked = next((piece.name for piece in pieces if piece.masked), None)
+    if masked is not None:
+        others = ", ".join(name for name in SURFACES if name != surface)
+        raise ValueError(
+            f"{path}: the surface '{surface}' of layer '{masked}' goes beyond its domain, which a .ply "
+            f"cannot cut off; take {others}"
+        )

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from layered_box import ORIGIN, ROTATION, layered_box
 
-from expanded_panoramas.ibl_toolkit.layers.export.pieces import pieces_of
+from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, pieces_of
 from expanded_panoramas.ibl_toolkit.layers.export.writing import export_layers, exposure_of
 from expanded_panoramas.ibl_toolkit.layers.panorama import LayeredPanorama
 
@@ -56,9 +56,8 @@ def test_glb_holds_the_pieces(tmp_path, mapping):
     panorama = layered_box(mapping, 48 if mapping == "cube map" else 64)
     exported = export_layers(panorama, tmp_path / "a.glb", exposure=0.5)
     document, arrays, views = read_glb(tmp_path / "a.glb")
-    pieces = pieces_of(panorama, 0.5)
+    pieces = pieces_of(panorama, 0.5, MESHES["mesh"])
     assert [m["name"] for m in document["meshes"]] == [p.name for p in pieces]
-    assert len(document["images"]) == 2  # the room's two pieces share one
     for piece, mesh, material in zip(pieces, document["meshes"], document["materials"], strict=True):
         (part,) = mesh["primitives"]
         position, uv = (arrays[part["attributes"][name]] for name in ("POSITION", "TEXCOORD_0"))
@@ -71,12 +70,22 @@ def test_glb_holds_the_pieces(tmp_path, mapping):
         assert material["extras"] == {"exposure": 0.5}
         image = document["images"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]
         pixels = cv2.imdecode(np.frombuffer(views[image["bufferView"]], np.uint8), cv2.IMREAD_UNCHANGED)
-        np.testing.assert_array_equal(pixels[..., ::-1], piece.texture.pixels[..., :3])
+        assert material["alphaMode"] == "MASK"
+        np.testing.assert_array_equal(cv2.cvtColor(pixels, cv2.COLOR_BGRA2RGBA), piece.texture.pixels)
     assert [(e.vertices, e.triangles) for e in exported.layers] == [
         (len(p.points), len(p.triangles)) for p in pieces
     ]
     assert sum(e.bytes for e in exported.layers) < (tmp_path / "a.glb").stat().st_size
     assert sum(e.bytes for e in exported.layers) > (tmp_path / "a.glb").stat().st_size - 4000
+
+
+def test_pieces_of_one_layer_share_a_texture_that_needs_no_mask(tmp_path):
+    export_layers(layered_box(), tmp_path / "a.glb", surface="quadtree")
+    document, _, views = read_glb(tmp_path / "a.glb")
+    assert (len(document["materials"]), len(document["images"])) == (3, 2)
+    assert not any("alphaMode" in material for material in document["materials"])
+    png = np.frombuffer(views[document["images"][0]["bufferView"]], np.uint8)
+    assert cv2.imdecode(png, cv2.IMREAD_UNCHANGED).shape == (32, 64, 3)
 
 
 def test_the_node_puts_the_panorama_where_it_stands(tmp_path):
@@ -184,8 +193,9 @@ def test_one_exposure_for_all_layers():
     [
         ("a.stl", {}, r"a\.stl: must end in \.glb, \.obj, \.ply"),
         ("a.glb", {"surface": "points"}, r"points can be written as \.ply only, not as \.glb"),
-        ("a.glb", {"surface": "cloud"}, "surface 'cloud' must be one of quadtree, grid, points"),
+        ("a.glb", {"surface": "cloud"}, "surface 'cloud' must be one of mesh, quadtree, grid, points"),
         ("a.glb", {"exposure": 0.0}, r"exposure 0\.0 must be finite and above 0"),
+        ("a.ply", {"surface": "mesh"}, "goes beyond its domain, which a .ply cannot cut off; take quadtree"),
         ("a.ply", {"far": 1.0}, r"far 1\.0 m must be finite and beyond"),
     ],
 )
