@@ -49,11 +49,16 @@ def put_sun(scene: bpy.types.Scene, place: Place, lamp: Disc) -> PickedSun:
     sun[LAMP_DIRECTION] = lamp.direction.tolist()
     origin = place.origin.matrix_world
     direction = (origin.to_3x3() @ Vector(lamp.direction.tolist())).normalized()
-    sun.rotation_mode = "XYZ"
-    sun.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()  # it shines along its −z
-    sun.location = origin.translation + DISTANCE * direction
+    aim(sun, direction, origin.translation)
     azimuth_deg = float(np.degrees(np.arctan2(direction.y, direction.x))) % 360
     return PickedSun(sun, is_new, float(np.degrees(np.arcsin(direction.z))), azimuth_deg)
+
+
+def aim(sun: bpy.types.Object, direction: Vector, origin: Vector):
+    """Let a sun light shine from a direction of the world, drawn on the ray from ``origin`` towards it."""
+    sun.rotation_mode = "XYZ"
+    sun.rotation_euler = direction.to_track_quat("Z", "Y").to_euler()  # it shines along its −z
+    sun.location = origin + DISTANCE * direction
 
 
 def _sun_of(scene, lamp):

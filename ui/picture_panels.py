@@ -38,6 +38,7 @@ class PANORAMA_PT_objects(Step, bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("panorama.add_sun", text="Add Sun", icon="LIGHT_SUN")
         row.operator("panorama.pick_sun", icon="EYEDROPPER")
+        layout.operator("panorama.add_sun_by_time", text="Add Sun by Time...", icon="TIME")
         layout.operator("panorama.add_asset_library", icon="ASSET_MANAGER")
         self.draw_selection(context)
 

@@ -107,10 +107,13 @@ def world_direction(azimuth_deg, altitude_deg, north_deg: float = 0.0) -> np.nda
 
     north_deg: where north lies in the world, counter-clockwise seen from above, from +y: at 0 north is +y
     and east +x; at 90 north is −x. That is Blender's turn about Z which brings +y to the north.
+    Raises ValueError for a north that is not finite.
 
     >>> world_direction(90.0, 0.0).round(3), world_direction(0.0, 0.0, north_deg=90).round(3)
     (array([1., 0., 0.]), array([-1.,  0.,  0.]))
     """
+    if not np.isfinite(north_deg):
+        raise ValueError(f"north {north_deg}: must be a finite number of degrees")
     bearing = np.radians(np.subtract(azimuth_deg, north_deg))  # clockwise from +y
     altitude = np.radians(altitude_deg)
     level = np.cos(altitude)

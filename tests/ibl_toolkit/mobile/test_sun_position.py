@@ -161,6 +161,11 @@ def test_bad_input_is_named(change, message):
         sun_position(**given)
 
 
+def test_a_north_that_is_no_number():
+    with pytest.raises(ValueError, match="north nan: must be a finite number of degrees"):
+        world_direction(0.0, 0.0, np.nan)
+
+
 @pytest.mark.parametrize("text", ["2026-03-20T12:00:00", "2026-03-20", "2026-03-20 12:00"])
 def test_a_text_without_zone(text):
     with pytest.raises(ValueError, match="has no zone; add Z for UTC"):
