@@ -10,6 +10,9 @@ from .. import cube_map, equirectangular
 from .panorama import EQUIRECTANGULAR, Layer, LayeredPanorama
 from .pinhole import Pinhole
 
+NEAREST = 0.25
+"""The pixel in which a direction lies has at least so much of the weight of the four round it."""
+
 
 @dataclass(frozen=True, eq=False)
 class RenderedView:
@@ -42,7 +45,7 @@ def far_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
         if not far.any():
             continue
         weight = sampled(layer, far.astype(np.float32), directions)
-        seen = weight >= 0.5
+        seen = weight >= NEAREST
         colours = sampled(layer, np.where(far[..., None], layer.radiance, 0).astype(np.float32), directions)
         radiance[seen] = colours[seen] / weight[seen, None]
         depth[seen] = np.inf
