@@ -8,6 +8,7 @@ from pathlib import Path
 from ..ibl_toolkit.images import read_rgbd
 from ..ibl_toolkit.images.atomic import new_folder
 from ..ibl_toolkit.layers.making.check import check_layers
+from ..ibl_toolkit.layers.making.continuous import continuous_layers
 from ..ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
 from ..ibl_toolkit.layers.making.uncovered import share_of_sphere, usual_radius
 from ..ibl_toolkit.layers.storage import write_layers
@@ -27,7 +28,8 @@ SAMPLES, WIDTH, MOST = 64, 2048, 4
 class LayersOptions:
     """The options of the verb, by the same names; None: its default.
 
-    radius, origin: [m]. width, samples, seed, denoise: of renders. collections: of a scene, a layer each.
+    radius, origin: [m]. width, samples, seed, denoise: of renders. surfaces: a layer for each surface along
+    the rays, whose depth jumps. collections: of a scene, a layer for each.
     """
 
     radius: float | None = None
@@ -38,12 +40,14 @@ class LayersOptions:
     denoise: bool = False
     origin: tuple[float, float, float] | None = None
     collections: tuple[str, ...] = ()
+    surfaces: bool = False
     levels: int = 1
     ldr: bool = False
 
 
-RENDERED = ("width", "samples", "seed", "denoise", "origin", "collections")
+RENDERED = ("width", "samples", "seed", "denoise", "surfaces", "origin", "collections")
 OF_SCENES = ("origin", "collections")
+OF_SURFACES = ("layers", "surfaces")
 
 
 def add_options(parser):
@@ -55,6 +59,7 @@ def add_options(parser):
     add("--samples", metavar="N", type=whole_number(1), help=f"of renders: paths per pixel ({SAMPLES})")
     add("--seed", metavar="S", type=whole_number(0), help="of renders: another gives other noise (0)")
     add("--denoise", action="store_true", help="of renders: remove noise, and some detail with it")
+    add("--surfaces", action="store_true", help="of renders: the surfaces along the rays, not split")
     add("--origin", metavar=("X", "Y", "Z"), type=float, nargs=3, help="of a scene (its active camera's)")
     add(
         "--collection",
@@ -115,7 +120,7 @@ def _from_set(path, options, progress):
 
         place_in(scene, job, pieces)
         with _steps(progress) as tell:
-            return capture_place(scene, options.radius, _capture(options), tell)
+            return _split(capture_place(scene, options.radius, _capture(options), tell), options, tell)
 
 
 def _from_scene(path, options, progress):
@@ -133,7 +138,18 @@ def _from_scene(path, options, progress):
                     scene, frame, options.radius, _capture(options), options.collections
                 )
         with _steps(progress) as tell:
-            return capture_surfaces(scene, frame, options.radius, _capture(options), tell)
+            return _split(
+                capture_surfaces(scene, frame, options.radius, _capture(options), tell), options, tell
+            )
+
+
+def _split(captured, options, tell):
+    """Successive surfaces as continuous layers, unless they are wanted as they are."""
+    if options.surfaces:
+        return captured
+    tell("splitting")
+    surfaces = [layer.name for layer in captured.layers if layer.name.startswith("surface")]
+    return continuous_layers(captured, surfaces)
 
 
 @contextmanager
@@ -166,11 +182,13 @@ def _capture(options):
 def _refuse_options(path, options):
     """Options that would do nothing."""
     kind = path.suffix.lower()
-    idle = {".exr": RENDERED, ".json": OF_SCENES}.get(kind, ("layers",) if options.collections else ())
+    idle = {".exr": RENDERED, ".json": OF_SCENES}.get(kind, OF_SURFACES if options.collections else ())
     for name in idle:
         if getattr(options, name) not in (None, False, ()) and getattr(options, name) != []:
             option = "--collection" if name == "collections" else f"--{name}"
-            raise ValueError(f"{option}: does nothing for {path}{' with --collection' * (name == 'layers')}")
+            raise ValueError(
+                f"{option}: does nothing for {path}{' with --collection' * (idle == OF_SURFACES)}"
+            )
 
 
 def _refuse_folder(output):

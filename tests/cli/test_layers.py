@@ -110,14 +110,25 @@ def test_a_scene_is_rendered(fresh_blend, tmp_path, panorama):
         "--samples",
         1,
     ]
-    _, out, _ = panorama(*command, "--radius", 0.5, "--layers", 2, "--json")
+    _, out, _ = panorama(*command, "--radius", 0.5, "--layers", 2, "--surfaces", "--json")
     result = json.loads(out)
     assert [layer["name"] for layer in result["layers"]] == ["surface 1", "surface 2"]
     assert result["layers"][0]["share"] == pytest.approx(1)
     assert {"surface 1", "surface 2", "writing"} <= set(result["seconds"])
+    assert "depth jumps" in result["warnings"][0]
     second = read_layers(tmp_path / "layers").layers[1]
     np.testing.assert_allclose(np.nanmin(second.depth), 3, rtol=0.03)
     assert (tmp_path / "scene.blend").read_bytes() == before
+
+
+def test_layers_of_a_scene_are_continuous(fresh_blend, tmp_path, panorama):
+    save_scene(fresh_blend, tmp_path / "scene.blend")
+    command = ["layers", tmp_path / "scene.blend", "-o", tmp_path / "layers", "--width", 128, "--samples", 1]
+    _, out, err = panorama(*command, "--radius", 0.5, "--json")
+    result = json.loads(out)
+    assert (err, result["warnings"]) == ([], [])
+    assert {"background", "front 1", "back of surface 1"} <= {layer["name"] for layer in result["layers"]}
+    assert "splitting" in result["seconds"]
 
 
 def test_origin_of_a_scene(fresh_blend, tmp_path, panorama):
@@ -145,7 +156,7 @@ def test_collections_of_a_scene_are_layers(fresh_blend, tmp_path, panorama):
 
 def test_a_set_is_rebuilt_and_shows_its_photograph(fresh_blend, room, panorama):
     command = ["layers", room / "room.json", "-o", room / "layers", "--width", 128, "--samples", 1]
-    _, out, _ = panorama(*command, "--radius", 0.4, "--json")
+    _, out, _ = panorama(*command, "--radius", 0.4, "--surfaces", "--json")
     result = json.loads(out)
     assert result["origin"] == pytest.approx([0, 0, 1.5])
     first, second = read_layers(room / "layers").layers[:2]
