@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, export, layers, lights, render, sun
+from . import batch, build, calibrate, depth, export, layers, lights, render, sun, view
 from .messages import warn
 
 VERBS = {
@@ -13,6 +13,7 @@ VERBS = {
     "lights": lights,
     "render": render,
     "layers": layers,
+    "view": view,
     "export": export,
 }
 WITHOUT_SET = {"sun": sun}

@@ -10,6 +10,7 @@ from .rendered_view import RenderedView
 from .subsampling import Samples, counts_needed, samples_within
 
 _SPACING = 1.0  # px: no pixel of a surface is without a sample of it
+_TIDIED = 1 << 21  # so many samples more, and those that turned out to be hidden are left out
 
 
 def adaptive_view(panorama: LayeredPanorama, camera: Pinhole, *, filter_radius: float = 0.75) -> RenderedView:
@@ -27,18 +28,29 @@ def adaptive_view(panorama: LayeredPanorama, camera: Pinhole, *, filter_radius: 
 
 def _visible_samples(canvas, layers, sky):
     rows, columns = canvas.shape
-    nearest, found = Nearest.of_cells(rows * columns), []
+    nearest, found, held, most = Nearest.of_cells(rows * columns), [], 0, _TIDIED
     for number, (layer, tiles) in enumerate(layers):
         for around in canvas.neighbourhoods(layer, tiles):
             counts = counts_needed(around, canvas.camera, _SPACING)
             for samples in samples_within(layer, around, canvas.camera, *counts):
                 samples, pixels = canvas.placed(samples)
                 nearest.add(number, pixels, samples.near)
-                kept = nearest.reaches(pixels, samples.near)  # so far: it saves memory
-                found.append((number, pixels[kept], samples[kept]))
+                found.append((number, pixels, samples))
+                held += len(samples)
+                if held > most:
+                    found = _visible(nearest, found)
+                    held = sum(len(samples) for _, _, samples in found)
+                    most = 2 * held + _TIDIED
     sky, pixels = canvas.placed(sky)
     nearest.add(len(layers), pixels, sky.near)
     found.append((len(layers), pixels, sky))
-    return Samples.joined(
-        [samples[nearest.is_nearest(number, pixels, samples.near)] for number, pixels, samples in found]
-    )
+    return Samples.joined([samples for _, _, samples in _visible(nearest, found)])
+
+
+def _visible(nearest, found):
+    """Of samples by layer and pixel those that are seen, as far as it is known."""
+    seen = []
+    for number, pixels, samples in found:
+        which = nearest.is_nearest(number, pixels, samples.near)
+        seen.append((number, pixels[which], samples[which]))
+    return seen

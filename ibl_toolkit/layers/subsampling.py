@@ -59,16 +59,13 @@ def counts_needed(around: Neighbourhoods, camera: Pinhole, spacing: float) -> tu
     of Alg. 10 where the map's rows run along the picture's or at 45 degrees to them; it holds at all angles.
     """
     x, y = _projected(around.points, camera)
-    with np.errstate(invalid="ignore"):  # behind the eye
-        return _counts(x, y, spacing, max(camera.width, camera.height))
-
-
-def _counts(x, y, spacing, most):
     u = [np.maximum(abs(k[_RIGHT] - k[_MIDDLE]), abs(k[_MIDDLE] - k[_LEFT])) for k in (x, y)]
     v = [np.maximum(abs(k[_BELOW] - k[_MIDDLE]), abs(k[_MIDDLE] - k[_ABOVE])) for k in (x, y)]
     longest_u, longest_v = (np.maximum(np.maximum(*k), 1e-6) for k in (u, v))
     shared = np.maximum(u[0] / longest_u + v[0] / longest_v, u[1] / longest_u + v[1] / longest_v)
-    return tuple(_whole(k * shared / spacing, most) for k in (longest_u, longest_v))
+    return tuple(
+        _whole(k * shared / spacing, max(camera.width, camera.height)) for k in (longest_u, longest_v)
+    )
 
 
 def samples_within(
@@ -98,14 +95,17 @@ def samples_within(
 
 
 def _projected(points, camera):
-    """Places x, y, each (9, m) [px]; infinite behind the eye."""
+    """Places x, y, each (9, m) [px]; NaN behind the eye."""
     distance = np.where(points[:, 2] > 0, points[:, 2], np.nan)
-    return (np.nan_to_num(camera.focal * points[:, axis] / distance, nan=np.inf) for axis in (0, 1))
+    return (camera.focal * points[:, axis] / distance for axis in (0, 1))
 
 
 def _whole(counts, most):
-    """Whole counts from 1 to `most`; large ones rounded up, so that there are fewer different ones."""
-    counts = np.ceil(np.minimum(np.nan_to_num(counts, nan=most), most)).astype(np.int64)
+    """Whole counts from 1 to `most`; large ones rounded up, so that there are fewer different ones.
+
+    NaN, where a pixel lies across the plane of the eye and could be of any size, becomes an eighth of `most`.
+    """
+    counts = np.ceil(np.minimum(np.nan_to_num(counts, nan=most / 8), most)).astype(np.int64)
     coarse = np.where(counts > 64, 32, np.where(counts > 8, 4, 1))
     return np.maximum((counts + coarse - 1) // coarse * coarse, 1)
 

@@ -54,7 +54,7 @@ def test_no_pixel_of_the_picture_is_left_without_a_sample(seed):
 def test_behind_the_eye_there_are_many_but_not_endlessly():
     pixel = flat_pixel((1, 0), (0, 1))
     pixel.points[5, 2] = -0.5
-    assert [int(count[0]) for count in counts_needed(pixel, CAMERA, 1.0)] == [224, 224]
+    assert [int(count[0]) for count in counts_needed(pixel, CAMERA, 1.0)] == [28, 28]
 
 
 def test_samples_lie_evenly_over_the_pixel_with_the_colours_between():
