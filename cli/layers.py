@@ -1,34 +1,29 @@
-"""`panorama layers INPUT -o FOLDER`: a panorama in layers, of a picture with depth, a set, or a scene."""
+"""`panorama layers INPUT -o FOLDER`: a panorama in layers, of a picture, points, a set or a scene."""
 
 import os
-from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from ..ibl_toolkit.images import read_rgbd
 from ..ibl_toolkit.images.atomic import new_folder
 from ..ibl_toolkit.layers.making.check import check_layers
-from ..ibl_toolkit.layers.making.continuous import continuous_layers
-from ..ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
-from ..ibl_toolkit.layers.making.uncovered import share_of_sphere, usual_radius
+from ..ibl_toolkit.layers.making.uncovered import share_of_sphere
 from ..ibl_toolkit.layers.storage import write_layers
 from ..ibl_toolkit.layers.xml_file import NAME
-from . import blender
-from .job import naming, open_job, place_in, rebuild
+from .layer_makers import SAMPLES, WIDTH, from_points, from_rgbd, from_scene, from_set
 from .options import positive, whole_number
 from .progress import Progress
 
-INPUT = "RGB-D panorama (.exr), panorama set (.json) or scene (.blend)"
+INPUT = "RGB-D panorama (.exr), points (.ply), panorama set (.json) or scene (.blend)"
 SUMMARY = "make a panorama in layers: what is seen from its origin, and what hides behind"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "FOLDER", "_layers", True
-SAMPLES, WIDTH, MOST = 64, 2048, 4
+MAKERS = {".exr": from_rgbd, ".ply": from_points, ".json": from_set, ".blend": from_scene}
 
 
 @dataclass(frozen=True)
 class LayersOptions:
     """The options of the verb, by the same names; None: its default.
 
-    radius, origin: [m]. width, samples, seed, denoise: of renders. surfaces: a layer for each surface along
+    radius, origin: [m]. samples, seed, denoise: of renders. surfaces: a layer for each surface along
     the rays, whose depth jumps. collections: of a scene, a layer for each.
     """
 
@@ -45,8 +40,14 @@ class LayersOptions:
     ldr: bool = False
 
 
-RENDERED = ("width", "samples", "seed", "denoise", "surfaces", "origin", "collections")
-OF_SCENES = ("origin", "collections")
+RENDERED = ("samples", "seed", "denoise", "surfaces")
+IDLE = {
+    ".exr": (*RENDERED, "width", "origin", "collections"),
+    ".ply": (*RENDERED, "collections"),
+    ".json": ("origin", "collections"),
+    ".blend": (),
+}
+"""Options that do nothing, by what the layers are made of."""
 OF_SURFACES = ("layers", "surfaces")
 
 
@@ -55,12 +56,18 @@ def add_options(parser):
     add = parser.add_argument
     add("--radius", metavar="R", type=positive, help="how far from the origin views will be [m]")
     add("--layers", metavar="N", type=whole_number(1), help="layers at most")
-    add("--width", metavar="W", type=whole_number(8, 65536), help=f"of renders [px] (default: {WIDTH})")
+    add("--width", metavar="W", type=whole_number(8, 65536), help=f"of renders and points [px] ({WIDTH})")
     add("--samples", metavar="N", type=whole_number(1), help=f"of renders: paths per pixel ({SAMPLES})")
     add("--seed", metavar="S", type=whole_number(0), help="of renders: another gives other noise (0)")
     add("--denoise", action="store_true", help="of renders: remove noise, and some detail with it")
     add("--surfaces", action="store_true", help="of renders: the surfaces along the rays, not split")
-    add("--origin", metavar=("X", "Y", "Z"), type=float, nargs=3, help="of a scene (its active camera's)")
+    add(
+        "--origin",
+        metavar=("X", "Y", "Z"),
+        type=float,
+        nargs=3,
+        help="of a scene (its camera's) or of points (0 0 0)",
+    )
     add(
         "--collection",
         dest="collections",
@@ -82,12 +89,12 @@ def run(input_path, output, options, progress):
 def make_layers(input_path, output, options=None, progress=None):
     """Write a panorama in layers into the folder `output` -> its layers, radius, origin and seconds.
 
-    input_path: an RGB-D panorama (.exr), a panorama set (.json), or a scene (.blend). A new folder is there
-    whole or not at all; in one that has a panorama in layers the new one takes its place.
+    input_path: an RGB-D panorama (.exr), points (.ply), a panorama set (.json), or a scene (.blend). A new
+    folder is there whole or not at all; in one that has a panorama in layers the new one takes its place.
     """
     options, progress = options or LayersOptions(), progress or Progress()
     path, output = Path(input_path), Path(output)
-    make = {".exr": _from_rgbd, ".json": _from_set, ".blend": _from_scene}.get(path.suffix.lower())
+    make = MAKERS.get(path.suffix.lower())
     if make is None:
         raise ValueError(f"{path}: must be {INPUT}")
     _refuse_options(path, options)
@@ -98,91 +105,9 @@ def make_layers(input_path, output, options=None, progress=None):
     return _result(panorama, progress)
 
 
-def _from_rgbd(path, options, progress):
-    with progress.step("reading"):
-        rgbd = read_rgbd(path, frame_needed=False)
-    with progress.step("layers"), naming(path):
-        return layers_from_rgbd(
-            rgbd.image,
-            rgbd.depth,
-            usual_radius(rgbd.depth) if options.radius is None else options.radius,
-            world_from_panorama=rgbd.world_from_panorama,
-            origin=(0.0, 0.0, rgbd.camera_height),
-            count=options.layers,
-        )
-
-
-def _from_set(path, options, progress):
-    job = open_job(path)
-    pieces = rebuild(job)
-    with blender.empty_scene(progress) as scene, naming(path):
-        from ..cycles_integration.place_layers import capture_place
-
-        place_in(scene, job, pieces)
-        with _steps(progress) as tell:
-            return _split(capture_place(scene, options.radius, _capture(options), tell), options, tell)
-
-
-def _from_scene(path, options, progress):
-    with open(path, "rb"):  # Blender's own complaint is long
-        pass
-    with blender.opened_scene(path, progress) as scene, naming(path):
-        from ..cycles_integration.collection_layers import capture_collections
-        from ..cycles_integration.layer_capture import capture_surfaces
-        from ..cycles_integration.layer_scene import frame_of
-
-        frame = frame_of(scene, options.origin)
-        if options.collections:
-            with progress.step("rendering"):
-                return capture_collections(
-                    scene, frame, options.radius, _capture(options), options.collections
-                )
-        with _steps(progress) as tell:
-            return _split(
-                capture_surfaces(scene, frame, options.radius, _capture(options), tell), options, tell
-            )
-
-
-def _split(captured, options, tell):
-    """Successive surfaces as continuous layers, unless they are wanted as they are."""
-    if options.surfaces:
-        return captured
-    tell("splitting")
-    surfaces = [layer.name for layer in captured.layers if layer.name.startswith("surface")]
-    return continuous_layers(captured, surfaces)
-
-
-@contextmanager
-def _steps(progress):
-    """A function that ends the step before and begins that of a name."""
-    with ExitStack() as stack:
-
-        def tell(name):
-            stack.close()
-            stack.enter_context(progress.step(name))
-
-        yield tell
-
-
-def _capture(options):
-    from ..cycles_integration.layer_render import LayerCapture
-
-    def given(value, default):
-        return default if value is None else value
-
-    return LayerCapture(
-        width=given(options.width, WIDTH),
-        samples=given(options.samples, SAMPLES),
-        most=given(options.layers, MOST),
-        denoise=options.denoise,
-        seed=options.seed or 0,
-    )
-
-
 def _refuse_options(path, options):
     """Options that would do nothing."""
-    kind = path.suffix.lower()
-    idle = {".exr": RENDERED, ".json": OF_SCENES}.get(kind, OF_SURFACES if options.collections else ())
+    idle = IDLE[path.suffix.lower()] or (OF_SURFACES if options.collections else ())
     for name in idle:
         if getattr(options, name) not in (None, False, ()) and getattr(options, name) != []:
             option = "--collection" if name == "collections" else f"--{name}"

@@ -71,6 +71,24 @@ def test_without_attributes_it_is_level_at_the_world_origin(tmp_path, panorama):
     assert json.loads(out)["radius"] == pytest.approx(CARD / 2)
 
 
+def test_points_become_layers(tmp_path, panorama):
+    image, depth = card_picture()
+    places = depth[..., None] * equirectangular.pixel_directions(WIDTH, WIDTH // 2) + np.float32([1, 0, 2])
+    vertices = np.concatenate([places, image], axis=-1).reshape(-1, 6)
+    kinds = [f"property float {name}" for name in ("x", "y", "z", "red", "green", "blue")]
+    header = ["ply", "format ascii 1.0", f"element vertex {len(vertices)}", *kinds, "end_header"]
+    lines = [" ".join(map(str, vertex)) for vertex in vertices.tolist()]
+    (tmp_path / "scan.ply").write_text("\n".join([*header, *lines]) + "\n")
+    command = ["layers", tmp_path / "scan.ply", "-o", tmp_path / "layers", "--origin", 1, 0, 2]
+    _, out, _ = panorama(*command, "--width", WIDTH, "--json")
+    result = json.loads(out)
+    assert result["origin"] == [1, 0, 2]
+    assert result["radius"] == pytest.approx(CARD / 2, rel=1e-3)
+    background, front = read_layers(tmp_path / "layers").layers[:2]
+    assert np.nanmedian(background.depth) == pytest.approx(WALL, rel=0.01)
+    assert np.nanmedian(front.depth) == pytest.approx(CARD, rel=0.01)
+
+
 def test_a_second_run_replaces_the_first_and_levels_and_ldr_are_written(rgbd_file, tmp_path, panorama):
     folder = tmp_path / "layers"
     for radius in (0.2, 0.5):
@@ -176,6 +194,8 @@ def test_a_set_is_rebuilt_and_shows_its_photograph(fresh_blend, room, panorama):
         (["map.exr", "-o", "map.exr"], "-o map.exr: is a file"),
         (["map.exr", "-o", "."], "has other files in it and no panorama.xml"),
         (["map.exr", "-o", "new", "--samples", "3"], "--samples: does nothing for map.exr"),
+        (["a.ply", "-o", "new", "--denoise"], "--denoise: does nothing for a.ply"),
+        (["map.exr", "-o", "new", "--width", "64"], "--width: does nothing for map.exr"),
         (["map.exr", "-o", "new", "--collection", "a"], "--collection: does nothing for map.exr"),
         (["room.json", "-o", "new", "--origin", "0", "0", "1"], "--origin: does nothing for room.json"),
         (
