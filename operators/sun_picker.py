@@ -1,4 +1,4 @@
-"""Operators that make a lamp of the panorama a sun light of the artist's own."""
+"""Operators that make lamps of the panorama sun lights of the artist's own."""
 
 import bpy
 import numpy as np
@@ -7,7 +7,7 @@ from ..cycles_integration import blender_images, maps
 from ..cycles_integration.picked_sun import put_sun
 from ..cycles_integration.place import place_of
 from ..ibl_toolkit.light.clipping import find_clipping
-from ..ibl_toolkit.light.picked_lamp import lamp_at, strongest_lamp
+from ..ibl_toolkit.light.picked_lamp import lamp_at, strongest_lamps
 from . import progress
 from .canvas import canvas_of
 from .probes import select_alone
@@ -25,35 +25,48 @@ class _SunOfLamp(Reporting):
         """The calibration says where the lamp is."""
         return possible(cls, progress.calibration_missing(context.scene))
 
-    def put(self, context, lamp_of):
-        """Put the sun of the lamp that ``lamp_of`` finds on the map; returns the line to report."""
+    def put(self, context, lamps_of):
+        """Put suns of the lamps that ``lamps_of`` finds on the map, the strongest first -> what to report."""
         place = place_of(context.scene)
         image = np.maximum(maps.shrink(blender_images.array_from_image(place.image), WIDTH), 0)
-        lamp = lamp_of(image)
-        sun = put_sun(context.scene, place, lamp)
-        select_alone(context, sun.light)
+        lamps = lamps_of(image)
+        suns = [put_sun(context.scene, place, lamp) for lamp in lamps]
+        select_alone(context, suns[0].light)
         clipping = find_clipping(image)
-        if clipping.is_clipped and clipping.mask.ravel()[lamp.pixels].any():
+        if clipping.is_clipped and any(clipping.mask.ravel()[lamp.pixels].any() for lamp in lamps):
             self.report({"WARNING"}, "The capture may have clipped this lamp: it was brighter then (step 5)")
         sigma = context.scene.panorama_set.result.uncertainty_tilt_deg
         known_to = f" ± {sigma:.2f}°" if sigma else ""  # a file with depth does not tell
-        return (
-            f"{sun.light.name}: elevation {sun.elevation_deg:.1f}°{known_to}, azimuth "
-            f"{sun.azimuth_deg:.1f}° from +x towards +y, {np.degrees(2 * lamp.radius):.2g}° across, strength "
-            f"{sun.light.data.energy:.3g}{'' if sun.is_new else ' (brought up to date)'}"
-        )
+        line = _described(suns[0], lamps[0], known_to)
+        return line if len(suns) == 1 else f"{len(suns)} suns, the strongest: {line}"
+
+
+def _described(sun, lamp, known_to):
+    return (
+        f"{sun.light.name}: elevation {sun.elevation_deg:.1f}°{known_to}, azimuth "
+        f"{sun.azimuth_deg:.1f}° from +x towards +y, {np.degrees(2 * lamp.radius):.2g}° across, strength "
+        f"{sun.light.data.energy:.3g}{'' if sun.is_new else ' (brought up to date)'}"
+    )
 
 
 class PANORAMA_OT_add_sun(_SunOfLamp, bpy.types.Operator):
-    """Add a sun light with direction, size, colour and strength of the panorama's strongest lamp, or bring
-    the one added before up to date. It shines beside the panorama's own light"""
+    """Add a sun light with direction, size, colour and strength of the panorama's strongest lamp, or of
+    several, or bring those added before up to date. They shine beside the panorama's own light"""
 
     bl_idname = "panorama.add_sun"
     bl_label = "Add Sun of the Panorama"
 
+    count: bpy.props.IntProperty(
+        name="Lamps",
+        description="Number of lamps, the strongest first, that become suns; fewer where fewer stand out",
+        default=1,
+        min=1,
+        soft_max=8,
+    )
+
     def work(self, context):
-        """Find the lamp that gives the most light."""
-        return self.put(context, strongest_lamp)
+        """Find the lamps that give the most light."""
+        return self.put(context, lambda image: strongest_lamps(image, self.count))
 
 
 class PANORAMA_OT_pick_sun(_SunOfLamp, bpy.types.Operator):
@@ -87,7 +100,7 @@ class PANORAMA_OT_pick_sun(_SunOfLamp, bpy.types.Operator):
 
     def work(self, context):
         """Find the lamp there."""
-        return self.put(context, lambda image: lamp_at(image, np.array(self.uv)))
+        return self.put(context, lambda image: (lamp_at(image, np.array(self.uv)),))
 
 
 classes = (PANORAMA_OT_add_sun, PANORAMA_OT_pick_sun)

@@ -1,4 +1,4 @@
-"""One lamp of a light map, as an artist asks for it: the strongest, or the one at a point of the image."""
+"""Lamps of a light map, as an artist asks for them: the strongest, or the one at a point of the image."""
 
 from __future__ import annotations
 
@@ -17,26 +17,27 @@ LEAST_CORE = 0.4
 """A core with less of its region's light is a hot pixel, or a gap between leaves: the region is the lamp."""
 
 
-def strongest_lamp(image: np.ndarray) -> Disc:
-    """Return the lamp of a light map (H, W, 3) that gives the most light: a region, not the brightest pixel.
+def strongest_lamps(image: np.ndarray, count: int = 1) -> tuple[Disc, ...]:
+    """Return the lamps of a light map (H, W, 3) that give the most light: regions, not the brightest pixels.
 
-    A sun comes without its glow, which would make its shadows soft: as the core of its region.
+    At most ``count``, at least one; the strongest first. A sun comes without its glow, which would make its
+    shadows soft: as the core of its region.
     Raises ValueError where no region stands out, and for what `check_light_map` refuses.
 
     >>> image = np.full((64, 128, 3), 0.01, np.float32)
     >>> image[10, 10] = 900  # one hot pixel
     >>> image[20:24, 40:48] = 100
-    >>> strongest_lamp(image).pixels.size
-    32
+    >>> [lamp.pixels.size for lamp in strongest_lamps(image)]
+    [32]
     """
-    return _core(image, _lamps(image)[0])
+    return tuple(_core(image, lamp) for lamp in _lamps(image)[:count])
 
 
 def lamp_at(image: np.ndarray, uv: np.ndarray) -> Disc:
-    """Return the lamp of a light map (H, W, 3) at an image point (2,), as `strongest_lamp` does.
+    """Return the lamp of a light map (H, W, 3) at an image point (2,), as `strongest_lamps` does.
 
     Raises ValueError, naming the point and the nearest lamp, where there is none; for a map without lamps as
-    `strongest_lamp` does.
+    `strongest_lamps` does.
     """
     lamps = _lamps(image)
     height, width = image.shape[:2]

@@ -72,6 +72,21 @@ def test_the_lamp_under_the_cursor_is_added_once(fresh_blend, place):
     assert len(suns(bpy)) == 2
 
 
+def test_several_lamps_as_suns(fresh_blend, place):
+    """Two stand out of the map; each becomes one sun, whose strengths are as their light is."""
+    bpy = fresh_blend
+    bpy.ops.panorama.add_sun(count=5)
+    assert len(suns(bpy)) == 2
+    for uv, radiance, radius in ((SUN_UV, 100, 3), (LAMP_UV, 10, 5)):
+        wanted = TURN.T @ equirectangular.direction_from_uv(uv)
+        (sun,) = [sun for sun in suns(bpy) if np.dot(towards(sun, bpy), wanted) > np.cos(np.radians(0.3))]
+        solid_angle = 2 * np.pi * (1 - np.cos(np.radians(radius)))
+        assert sun.data.energy == pytest.approx(radiance * solid_angle, rel=0.1)
+    assert bpy.context.active_object.data.energy == max(sun.data.energy for sun in suns(bpy))
+    bpy.ops.panorama.add_sun(count=5)
+    assert len(suns(bpy)) == 2
+
+
 def test_it_follows_another_calibration_when_asked_again(fresh_blend, place):
     bpy = fresh_blend
     bpy.ops.panorama.add_sun()
@@ -95,13 +110,13 @@ def test_it_reports_angles_with_the_uncertainty_of_the_tilt(fresh_blend, place):
     """Its row of the map says the elevation, (½ − 0.2)·180° = 54°; the quarter turn leaves it."""
     from types import SimpleNamespace
 
-    from expanded_panoramas.ibl_toolkit.light.picked_lamp import strongest_lamp
+    from expanded_panoramas.ibl_toolkit.light.picked_lamp import strongest_lamps
     from expanded_panoramas.operators import sun_picker
 
     fresh_blend.context.scene.panorama_set.result.uncertainty_tilt_deg = 0.25
     reports = []
     line = sun_picker._SunOfLamp.put(
-        SimpleNamespace(report=lambda *report: reports.append(report)), fresh_blend.context, strongest_lamp
+        SimpleNamespace(report=lambda *report: reports.append(report)), fresh_blend.context, strongest_lamps
     )
     assert "elevation 54" in line or "elevation 53.9" in line
     assert "± 0.25°" in line
