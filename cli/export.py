@@ -3,6 +3,8 @@
 from dataclasses import dataclass, fields
 from pathlib import Path
 
+import numpy as np
+
 from ..ibl_toolkit.images import (
     PhotoSphere,
     exposure_for,
@@ -99,7 +101,7 @@ def _meshes(path, output, options, progress):
             texture_error_px=options.texture_error or TEXTURE_ERROR_PX,
         )
     layers = [vars(layer) for layer in exported.layers]
-    return {**_result(exported.files, exported.exposure, progress), "layers": layers}
+    return {**_result(exported.files, exported.exposure, exported.clipped, progress), "layers": layers}
 
 
 def _picture(path, output, options, progress):
@@ -113,7 +115,9 @@ def _picture(path, output, options, progress):
     sphere = PhotoSphere.whole(width, height, world_from_panorama)
     with progress.step("writing"):
         PICTURES[output.suffix.lower()](output, image, exposure=exposure, sphere=sphere)
-    return {**_result([output], exposure, progress), "size": [width, height], "pose_deg": sphere.pose_deg}
+    clipped = np.count_nonzero(image.max(axis=2) * exposure > 1) / (width * height)
+    told = _result([output], exposure, clipped, progress)
+    return {**told, "size": [width, height], "pose_deg": sphere.pose_deg}
 
 
 def _read_picture(path, level):
@@ -137,11 +141,12 @@ def _is_folder(path):
     return path.is_dir() or path.suffix.lower() == ".xml"
 
 
-def _result(files, exposure, progress):
+def _result(files, exposure, clipped, progress):
     return {
         "files": [str(file) for file in files],
         "bytes": sum(file.stat().st_size for file in files),
         "exposure": float(exposure),
+        "clipped": clipped,
         "seconds": dict(progress.seconds),
         "warnings": [],
     }
@@ -156,7 +161,8 @@ def describe(result):
     if "size" in result:
         lines = ["{} × {} px".format(*result["size"])]
     files = ", ".join(result["files"])
-    return [*lines, f"{files}: {_size(result['bytes'])}, radiance × {result['exposure']:.4g}"]
+    clipped = f"{100 * result['clipped']:.3g} % of the pixels clipped"
+    return [*lines, f"{files}: {_size(result['bytes'])}, radiance × {result['exposure']:.4g}, {clipped}"]
 
 
 def _size(count):

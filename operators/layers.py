@@ -161,7 +161,8 @@ class PANORAMA_OT_export_layers(Reporting, ExportHelper, bpy.types.Operator):
         done = export_layers(read_layers(folder_of(context.scene.panorama_layers)), path)
         vertices = sum(layer.vertices for layer in done.layers)
         triangles = sum(layer.triangles for layer in done.layers)
-        return f"Wrote {path}: {vertices} vertices, {triangles} triangles, radiance × {done.exposure:.4g}"
+        light = f"radiance × {done.exposure:.4g}, {100 * done.clipped:.3g} % of the pixels clipped"
+        return f"Wrote {path}: {vertices} vertices, {triangles} triangles, {light}"
 
 
 def _scene_like(scene):

@@ -157,6 +157,17 @@ def test_a_picture_of_a_panorama_has_no_pose_unless_it_is_known(tmp_path, panora
     np.testing.assert_allclose(got, ROTATION, atol=1e-5)
 
 
+def test_what_people_read(box, tmp_path, panorama):
+    _, out, _ = panorama("export", box[0], "-o", tmp_path / "a.glb", "--exposure", 2)
+    lines = out.splitlines()
+    assert [line.split(":")[0] for line in lines[:-1]] == ["room", "room at infinity", "objects"]
+    assert "triangles" in lines[0]
+    assert "radiance × 2, " in lines[-1]
+    assert "% of the pixels clipped" in lines[-1]
+    _, out, _ = panorama("export", box[0], "-o", tmp_path / "a.jpg")
+    assert out.splitlines()[0] == "64 × 32 px"
+
+
 def test_a_coarser_level(tmp_path, panorama):
     write_layers(layered_box(), tmp_path / "box", levels=2)
     vertices = []

@@ -34,11 +34,15 @@ class ExportedLayer:
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written: the layers, the factor that radiance was multiplied with, the files."""
+    """What was written: the layers, the factor that radiance was multiplied with, the files.
+
+    clipped: share of the layers' pixels that are brighter than what 8 bits hold then, 0 to 1.
+    """
 
     layers: tuple[ExportedLayer, ...]
     exposure: float
     files: tuple[Path, ...]
+    clipped: float
 
 
 def export_layers(
@@ -79,7 +83,8 @@ def export_layers(
         write_glb(path, panorama, pieces, exposure)
         files = [path]
         sizes = [piece.points.nbytes + piece.uv.nbytes + piece.triangles.nbytes for piece in pieces]
-    return Exported(tuple(map(_textured, pieces, sizes, _first_uses(pieces))), exposure, tuple(files))
+    written = tuple(map(_textured, pieces, sizes, _first_uses(pieces)))
+    return Exported(written, exposure, tuple(files), clipped_share(panorama, exposure))
 
 
 def exposure_of(panorama: LayeredPanorama) -> float:
@@ -92,13 +97,20 @@ def exposure_of(panorama: LayeredPanorama) -> float:
     return exposure_for(np.concatenate(shown)[None])
 
 
+def clipped_share(panorama: LayeredPanorama, exposure: float) -> float:
+    """Share of the layers' pixels of which radiance times `exposure` is above 1 in any colour."""
+    inside = [layer.radiance[layer.mask].max(axis=1) for layer in panorama.layers]
+    clipped = sum(np.count_nonzero(brightest * exposure > 1) for brightest in inside)
+    return clipped / sum(map(len, inside))
+
+
 def _write_ply(path, panorama, parts, exposure):
     write_ply(path, panorama, parts)
     sizes = [(len(part.points), len(part.triangles)) for part in parts]
     layers = [
         ExportedLayer(part.name, *size, bytes_of(*size)) for part, size in zip(parts, sizes, strict=True)
     ]
-    return Exported(tuple(layers), exposure, (path,))
+    return Exported(tuple(layers), exposure, (path,), clipped_share(panorama, exposure))
 
 
 def _textured(piece, size, has_texture):

@@ -188,6 +188,16 @@ def test_one_exposure_for_all_layers():
     assert exposure_of(panorama) == pytest.approx(0.18 / 0.5, rel=0.1)
 
 
+def test_what_is_clipped_is_told(tmp_path):
+    panorama = layered_box()
+    limit = 1 / 1.5
+    expected = [(layer.radiance[layer.mask] > limit).any(axis=1) for layer in panorama.layers]
+    for name in ("a.glb", "a.ply"):
+        clipped = export_layers(panorama, tmp_path / name, exposure=1.5).clipped
+        assert clipped == pytest.approx(np.concatenate(expected).mean())
+    assert export_layers(panorama, tmp_path / "a.glb", exposure=1.0).clipped == 0
+
+
 @pytest.mark.parametrize(
     ("name", "options", "message"),
     [
