@@ -68,7 +68,7 @@ class PANORAMA_OT_add_sun_by_time(Reporting, bpy.types.Operator):
     )
     north_from: bpy.props.EnumProperty(name="North", description="What says where north is", items=NORTHS)
     north: bpy.props.FloatProperty(
-        name="North",
+        name="Angle of North",
         description="Direction of north in the world, counter-clockwise from +Y seen from above: at 0 north "
         "is +Y, at 90 it is -X [degrees]",
         soft_min=-180,

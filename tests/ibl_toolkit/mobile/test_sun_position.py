@@ -21,9 +21,9 @@ PARALLAX = 8.8 * ARCSECOND
 OBLIQUITY = 23.44
 BOUNDS = {  # largest error [arc seconds] by the charts, and a little
     ("psa2020", 2020, 2050): 30,
-    ("psa2020", 1950, 2050): 43,
+    ("psa2020", 1950, 2050): 45,
     ("psa2001", 1999, 2015): 30,
-    ("psa2001", 1950, 2050): 40,
+    ("psa2001", 1950, 2050): 37,
 }
 
 
