@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..ibl_toolkit import cube_map
-from ..ibl_toolkit.layers.export.pieces import MESHES, checked_far, leaves_domain, parts_of
+from ..ibl_toolkit.layers.export.pieces import MESHES, checked_far, leaves_domain, parts_of, shape_radius
 from ..ibl_toolkit.layers.export.texture import spread
 from ..ibl_toolkit.layers.panorama import CUBE_MAP, Layer, LayeredPanorama
 from . import blender_images
@@ -54,7 +54,7 @@ def add_layers(
         if layer.radiance is None:
             raise ValueError(f"{layer} has no radiance, so there is nothing to show on its surface")
     parts = [
-        (layer, part, mesh_of(part, panorama.radius))
+        (layer, part, mesh_of(part, shape_radius(panorama)))
         for layer in panorama.layers
         for part in parts_of(layer, far)
     ]

@@ -20,6 +20,7 @@ class PanoramaLayers(bpy.types.PropertyGroup):
         name="Folder",
         description="Folder of the panorama in layers: where it is made, and from where it is opened",
         subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
         update=_folder_changed,
     )
     radius: FloatProperty(

@@ -16,7 +16,7 @@ from .texture import Texture, texture_of
 from .texture_coordinates import shared_vertices
 
 MESHES: dict[str, Callable] = {
-    "mesh": lambda layer, radius: bounded_mesh(layer, radius),
+    "mesh": bounded_mesh,
     "quadtree": lambda layer, radius: quadtree_mesh(layer, quadtree_of(layer)),
     "grid": lambda layer, radius: uniform_mesh(layer),
 }
@@ -69,8 +69,21 @@ def pieces_of(
     for layer in panorama.layers:
         texture = texture_of(layer, exposure)
         for part in parts_of(layer, far):
-            pieces.append(_piece(part, mesh_of(part, panorama.radius), texture, texture_error_px))
+            mesh = mesh_of(part, shape_radius(panorama))
+            pieces.append(_piece(part, mesh, texture, texture_error_px))
     return pieces
+
+
+def shape_radius(panorama: LayeredPanorama) -> float:
+    """How far from the origin the meshes' shape is to be right [m]: within the panorama's radius.
+
+    Where that is 0 any shape would do, as seen from the origin. Other programs look from elsewhere: half of
+    what is nearest is taken.
+    """
+    if panorama.radius > 0:
+        return panorama.radius
+    finite = [layer.depth[layer.mask & np.isfinite(layer.depth)] for layer in panorama.layers]
+    return float(min((depth.min() for depth in finite if depth.size), default=0.0)) / 2
 
 
 def parts_of(layer: Layer, far: float) -> list[Layer]:

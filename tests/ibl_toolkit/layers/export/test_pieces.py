@@ -6,7 +6,7 @@ from box_layers import BOTH, HALF, is_closed
 from layered_box import layered_box, radiance_in
 
 from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb
-from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, far_radius, pieces_of
+from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, far_radius, pieces_of, shape_radius
 from expanded_panoramas.ibl_toolkit.layers.export.ply import points_of_piece
 from expanded_panoramas.ibl_toolkit.layers.export.texture_coordinates import CubeChart, EquirectangularChart
 from expanded_panoramas.ibl_toolkit.layers.layer_mesh import LayerMesh
@@ -143,6 +143,15 @@ def test_masks_of_a_part_at_infinity_and_of_the_rest(mapping):
         towards = chart.direction(middles)
         shown = alpha[at[:, 1].clip(0, height - 1), at[:, 0] % width] > 127
         assert ((towards[:, 1] > 0.9) == shown)[np.abs(towards[:, 1] - 0.9) > 0.1].all() == (piece is window)
+
+
+def test_a_panorama_of_no_radius_has_a_shape_all_the_same():
+    panorama = layered_box(width=128, names=("walls",))
+    still = LayeredPanorama(panorama.layers, np.eye(3), np.zeros(3), 0.0)
+    points = pieces_of(still, 1.0, MESHES["mesh"])[0].points
+    np.testing.assert_allclose(np.ptp(points, axis=0), 2 * HALF, rtol=0.02)
+    assert shape_radius(still) == pytest.approx(HALF.min() / 2, rel=0.01)
+    assert shape_radius(panorama) == panorama.radius
 
 
 def test_colours_are_spread_beyond_the_domain():
