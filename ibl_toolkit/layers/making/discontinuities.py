@@ -22,6 +22,7 @@ CREASE_DEG = 15.0
 """Smallest angle of a hollow crease."""
 _STEEPER = 4.0  # a jump is so many times what the surfaces beside it do from pixel to pixel
 _AT_RIM = 0.1
+_SMOOTHINGS = 4
 _PAD = 3
 _UPRIGHT = ((UP, (2, 1, 0)), (DOWN, (-3, -2, -1)))
 
@@ -82,6 +83,18 @@ def creases(grid: PixelGrid, near: np.ndarray, least_deg: float = CREASE_DEG) ->
             return angle_after - angle_before > least
 
     return _by_slots(grid, near, hollow)
+
+
+def smoothed(grid: PixelGrid, near: np.ndarray, jumps: np.ndarray) -> np.ndarray:
+    """1/depth (size,) with less noise: means of neighbours between which it doesn't jump, four times over.
+
+    jumps: (4, size), of `cuts`. It is as a bell of 1.3 px.
+    """
+    joined = ~jumps
+    weight = 1 + joined.sum(axis=0)
+    for _ in range(_SMOOTHINGS):
+        near = (near + np.where(joined, near[grid.neighbours], 0).sum(axis=0)) / weight
+    return near.astype(np.float32)
 
 
 def _by_slots(grid, near, rule):

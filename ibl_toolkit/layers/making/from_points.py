@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..panorama import EQUIRECTANGULAR, Layer, LayeredPanorama, refuse_other_place
-from .discontinuities import cuts
+from .discontinuities import cuts, smoothed
 from .flood import flood
 from .grid import PixelGrid
 from .inpainting import filled_radiance
@@ -16,7 +16,6 @@ from .planes import local_planes
 from .point_surfaces import splat_width, surfaces_of_points
 from .splitting import split_layers
 
-_SMOOTHINGS = 4  # as a bell of 1.3 px: creases of surfaces are sought, and the noise has many
 HOLE_PX = 16.0
 """Widest hole [px] that is closed."""
 
@@ -62,7 +61,7 @@ def layers_from_points(
         raise ValueError(f"count {count} of layers must be 1 or more")
     found = surfaces_of_points(grid, offsets, colours, splat_px, radius)
     near, filled, unknown = _closed(grid, found, hole_px, radius)
-    near = _smoothed(grid, near, radius)
+    near = smoothed(grid, near, cuts(grid, near, radius))
     layers = split_layers(grid, near, filled, radius, count, found.behind, found.behind_colours)
     layers = tuple(kept for layer in layers if (kept := _without(grid, layer, unknown)) is not None)
     return LayeredPanorama(layers, world_from_panorama, np.asarray(origin, np.float64), radius)
@@ -108,15 +107,6 @@ def _closed(grid, found, hole_px, radius):
     unknown = np.zeros(grid.size, dtype=bool)
     unknown[missing] = far > hole_px / 2 * grid.pixel
     return near, colours, unknown
-
-
-def _smoothed(grid, near, radius):
-    """1/depth (size,) with less noise: means of neighbours between which it doesn't jump, again and again."""
-    joined = ~cuts(grid, near, radius)
-    weight = 1 + joined.sum(axis=0)
-    for _ in range(_SMOOTHINGS):
-        near = (near + np.where(joined, near[grid.neighbours], 0).sum(axis=0)) / weight
-    return near.astype(np.float32)
 
 
 def _without(grid, layer, unknown):

@@ -8,14 +8,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..panorama import Layer
-from .discontinuities import creases, cuts
-from .grid import PixelGrid
+from .discontinuities import creases, cuts, smoothed
+from .grid import LEFT, RIGHT, PixelGrid
 from .inpainting import filled_radiance
 from .levels import levels
 from .planes import region_planes
 from .regions import regions
 from .strips import hidden_strip
 
+_NOISY = 0.05  # [rad], 3°: median turn of surfaces from pixel to pixel; creases are 15°
 _EDGE_PX = 1  # beside an edge colours are mixed: those are kept, but not continued
 
 
@@ -29,7 +30,7 @@ def split_layers(
     where nothing is: they go to the background, in place of what would be found for it.
     """
     jumps = cuts(grid, near, radius)
-    number, labels = regions(grid, near, jumps, creases(grid, near), radius)
+    number, labels = regions(grid, near, jumps, _creases(grid, near, jumps), radius)
     level = levels(number, labels, grid, near, jumps, count)[labels]
     planes, flat = region_planes(grid, near, number, labels, radius)
     mixed = _beside(grid, jumps)
@@ -42,6 +43,15 @@ def split_layers(
         name = f"front {this}" if this else "background"
         layers.append(Layer(name, grid.mapping, {k: grid.image(v) for k, v in values.items()}))
     return tuple(layers)
+
+
+def _creases(grid, near, jumps):
+    """Hollow creases, of 1/depth without its noise if that alone makes surfaces turn from pixel to pixel."""
+    right, left = near[grid.neighbours[RIGHT]], near[grid.neighbours[LEFT]]
+    finite = near > 0
+    turn = np.abs(right + left - 2 * near)[finite] / (grid.pixel * near[finite])
+    noisy = finite.any() and np.median(turn) > _NOISY
+    return creases(grid, smoothed(grid, near, jumps) if noisy else near)
 
 
 def _layer_values(grid, colours, near, labels, visible, mixed, strip, known):

@@ -32,7 +32,7 @@ def test_a_room_scanned_from_three_places(mapping):
     assert np.median(off[hidden]) < 5e-3
     assert psnr(back.radiance, room.behind, visible) > 40
     front = np.any([layer.mask for layer in panorama.layers[1:]], axis=0)
-    assert np.count_nonzero(front != room.hit) < 0.15 * np.count_nonzero(room.hit)
+    assert np.count_nonzero(front != room.hit) < 0.2 * np.count_nonzero(room.hit)
 
 
 def test_place_and_rotation():

@@ -187,6 +187,18 @@ def test_tiny_maps(size):
     assert check_layers(panorama).uncovered == 0
 
 
+def test_depth_with_noise():
+    """Of a thousandth, as of a good scanner: the box is cut off as before."""
+    room = room_with_box("equirectangular", 512)
+    rng = np.random.default_rng(6)
+    noisy = room.depth * (1 + 1e-3 * rng.standard_normal(room.depth.shape)).astype(np.float32)
+    panorama = layers_from_rgbd(room.radiance, noisy, RADIUS)
+    back, front = panorama.layers
+    assert np.count_nonzero(front.mask != room.hit) < 0.05 * np.count_nonzero(room.hit)
+    hidden = back.mask & room.hit
+    assert np.median(np.abs(back.depth[hidden] / room.behind_depth[hidden] - 1)) < 1e-3
+
+
 def test_noise_at_random():
     rng = np.random.default_rng(5)
     for mapping, shape in (("equirectangular", (32, 64)), ("cube map", (32, 48))):
