@@ -62,6 +62,22 @@ def render_view(
     return np.maximum(picture, 0)
 
 
+def render_view_distance(scene: bpy.types.Scene, view: View, size: tuple[int, int]) -> np.ndarray:
+    """How far the room's surfaces are in a view: (H, W) [m] along its forward axis, at pixels' centres."""
+    camera = add_camera(scene, view)
+    view_layer = scene.view_layers[0]
+    _settings(scene, size, 0)
+    view_layer.use_pass_z = True
+    try:
+        scene.cycles.samples, scene.cycles.use_denoising = 1, False
+        capture.sample_pixel_centres(scene)
+        return capture.render_passes(scene)["Depth"]
+    finally:
+        view_layer.use_pass_z = False
+        _box_filter(scene)
+        _remove_camera(camera)
+
+
 def _capture_layer(scene, name, shown, hidden, samples, denoise):
     view_layer = scene.view_layers[0]
     layer_collection(view_layer, layer_collection_of(scene, hidden)).indirect_only = True

@@ -6,7 +6,10 @@ import math
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 from mathutils import Vector
+
+from ...ibl_toolkit.layers.pinhole import Pinhole
 
 FOV_DEG = 60.0
 """Of a view's width (thesis, 8.6)."""
@@ -43,6 +46,11 @@ C1 = View("C1", (-0.6, 0.6, 1.15), TABLE_8_1[0].direction)
 """The centre, and the place beside it, of Figures 7-22 to 7-24, whose captions print (−0.6, 0.6, 1.15) where
 the text of 7.4.3 has (−0.6, −0.6, 1.15). No direction is printed: they look as S1 does.
 """
+
+
+def pinhole(view: View, width: int, height: int) -> Pinhole:
+    """The camera of a view, as methods of views take it."""
+    return Pinhole.looking_at(view.eye, np.add(view.eye, view.direction), FOV_DEG, width, height)
 
 
 def add_camera(scene: bpy.types.Scene, view: View) -> bpy.types.Object:
