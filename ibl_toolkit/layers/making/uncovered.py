@@ -86,7 +86,8 @@ def share_of_sphere(pixels: np.ndarray) -> float:
     1.0
     """
     height, width = pixels.shape
-    return float(pixels.sum(axis=1) @ equirectangular.row_solid_angles(width, height) / (4 * np.pi))
+    covered = pixels.sum(axis=1) @ equirectangular.row_solid_angles(width, height)
+    return min(float(covered / (4 * np.pi)), 1.0)
 
 
 def usual_radius(depth: np.ndarray) -> float:
