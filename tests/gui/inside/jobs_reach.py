@@ -92,6 +92,23 @@ def sun_by_click(stage):
     stage.note(off_deg=shines_from.angle(towards) * 57.29578, across_deg=sun.data.angle * 57.29578)
 
 
+def sun_of_today(stage):
+    """Press the button, take what the dialog proposes; then undo."""
+    _, sidebar = yield from place_of_sample(stage)
+    yield from look.click_button(stage.hand, sidebar, "panorama.add_sun_by_time")
+    yield
+    yield from stage.hand.key("RET")
+    yield Until(lambda: "Sun by Time" in bpy.data.objects, "the sun")
+    sun = bpy.data.objects["Sun by Time"]
+    bpy.context.view_layer.update()
+    shines_from = sun.matrix_world.to_3x3() @ Vector((0, 0, 1))
+    stage.note(direction=list(shines_from), kept=sun["panorama_sun_by_time"].to_dict())
+    yield from stage.hand.move(*look.middle(look.area("VIEW_3D")))
+    yield from stage.hand.key("Z", ctrl=True)
+    yield
+    stage.note(undone="Sun by Time" not in bpy.data.objects)
+
+
 def preset_by_click(stage):
     """Open the presets in the header of the step Render, and choose one by its name."""
     view, _ = yield from place_of_sample(stage)
@@ -109,4 +126,4 @@ def preset_by_click(stage):
     stage.note(after=job())
 
 
-JOBS = (send_by_click, sun_by_click, preset_by_click)
+JOBS = (send_by_click, sun_by_click, sun_of_today, preset_by_click)
