@@ -92,8 +92,13 @@ class Corners:
             direction = self._on_cube(corners)
             return direction / np.linalg.norm(direction, axis=1, keepdims=True)
         _, row, column = np.unravel_index(corners, self.shape)
-        uv = np.stack([column / self.width, row / self.height], axis=-1)
-        return equirectangular.direction_from_uv(uv)
+        u, v = np.arange(self.width + 1) / self.width, np.arange(self.height + 1) / self.height
+        level = equirectangular.direction_from_uv(np.stack([u, np.full_like(u, 0.5)], axis=1))
+        upright = equirectangular.direction_from_uv(np.stack([np.full_like(v, 0.5), v], axis=1))
+        directions = level[column]
+        directions *= upright[row, :1]
+        directions[:, 2] = upright[row, 2]
+        return directions
 
     def depths(self, depth, inside, corners):
         """Depths (n,) [m] at corners (n,), from the pixels of the domain round each of them.

@@ -66,17 +66,30 @@ def quadtree_mesh(layer: Layer, tree: Quadtree) -> LayerMesh:
     return _mesh(corners, depth, inside, triangulate_cells(leaves.chosen(pixels > 0), corners))
 
 
-def uniform_mesh(layer: Layer) -> LayerMesh:
+def uniform_mesh(layer: Layer, pixels: np.ndarray | None = None) -> LayerMesh:
     """Two triangles for each pixel of the layer's domain, one in the rows at the poles (7.4.1).
 
-    What lies at infinity is left out.
+    pixels: (H, W) bool, if only a part of the mesh is wanted: those of these pixels. What lies at infinity is
+    left out.
 
     >>> wall = Layer("wall", "equirectangular", {"depth": np.full((4, 8), 3.0, np.float32)})
     >>> len(uniform_mesh(wall).triangles)
     48
     """
     corners, depth, inside = _sheets(layer)
-    return _mesh(corners, depth, inside, triangulate_pixels(inside, corners))
+    wanted = inside if pixels is None else inside & corners.as_sheets(pixels)
+    return _mesh(corners, depth, inside, triangulate_pixels(wanted, corners))
+
+
+def uniform_triangles(layer: Layer) -> int:
+    """How many triangles `uniform_mesh` has.
+
+    >>> uniform_triangles(Layer("wall", "equirectangular", {"depth": np.full((4, 8), 3.0, np.float32)}))
+    48
+    """
+    corners, _, inside = _sheets(layer)
+    at_poles = np.count_nonzero(inside[:, [0, -1]]) if corners.wraps else 0
+    return 2 * np.count_nonzero(inside) - at_poles
 
 
 def _sheets(layer):
