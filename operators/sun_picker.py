@@ -17,6 +17,11 @@ WIDTH = 2048
 """Lamps are looked for on a map of at most this width [px]."""
 
 
+def map_for_lamps(place):
+    """The place's panorama (H, W, 3) in the size in which lamps are looked for."""
+    return np.maximum(maps.shrink(blender_images.array_from_image(place.image), WIDTH), 0)
+
+
 class _SunOfLamp(Reporting):
     """An operator that puts a sun where a lamp of the calibrated panorama is."""
 
@@ -28,7 +33,7 @@ class _SunOfLamp(Reporting):
     def put(self, context, lamps_of):
         """Put suns of the lamps that ``lamps_of`` finds on the map, the strongest first -> what to report."""
         place = place_of(context.scene)
-        image = np.maximum(maps.shrink(blender_images.array_from_image(place.image), WIDTH), 0)
+        image = map_for_lamps(place)
         lamps = lamps_of(image)
         suns = [put_sun(context.scene, place, lamp) for lamp in lamps]
         select_alone(context, suns[0].light)

@@ -7,16 +7,32 @@ import numpy as np
 
 from ..cycles_integration.place import place_of
 from ..cycles_integration.sun_by_time import SETTINGS, put_sun_by_time, sun_by_time
-from ..ibl_toolkit.images.photo_sphere import pose_of
-from ..ibl_toolkit.mobile.sun_position import METHODS, sun_position, warnings_of, world_direction
+from ..ibl_toolkit.light.picked_lamp import strongest_lamps
+from ..ibl_toolkit.mobile.sun_position import (
+    METHODS,
+    north_of,
+    sun_position,
+    warnings_of,
+    world_direction,
+)
 from .probes import select_alone
 from .reporting import Reporting
+from .sun_picker import map_for_lamps
 
 TIME = ("year", "month", "day", "hour", "minute")
 NORTHS = (
     ("WORLD", "In the World", "An angle in the world says where north is"),
     ("PANORAMA", "By the Panorama", "The compass heading of the panorama's middle says where north is"),
+    (
+        "LAMP",
+        "By the Panorama's Sun",
+        "The panorama's strongest lamp is the sun at this time. The heading "
+        "that follows is kept, for other times",
+    ),
 )
+NORTH_FIELDS = {"WORLD": ("north",), "PANORAMA": ("heading",), "LAMP": ()}
+SAME_SUN_DEG = 2.0
+"""Where the panorama's sun and the computed one differ more in altitude, something is not as was said."""
 FITS = {
     "psa2020": "Coefficients fitted to 2020 to 2050: within 30 arc seconds then",
     "psa2001": "Coefficients fitted to 1999 to 2015, as in the source: within 30 arc seconds then",
@@ -108,7 +124,7 @@ class PANORAMA_OT_add_sun_by_time(Reporting, bpy.types.Operator):
             ("latitude", "longitude"),
             ("year", "month", "day"),
             ("hour", "minute", "utc_offset"),
-            ("north_from", "north" if self.north_from == "WORLD" else "heading"),
+            ("north_from", *NORTH_FIELDS[self.north_from]),
             ("method",),
         ):
             column = layout.column(align=True)
@@ -119,15 +135,18 @@ class PANORAMA_OT_add_sun_by_time(Reporting, bpy.types.Operator):
         """Compute where it stood, and put it there."""
         time = self.time()
         position = sun_position(time, self.latitude, self.longitude, self.method)
+        if self.north_from == "LAMP":
+            self.find_heading(context.scene, position)
         north_deg = self.north_in_world(context.scene)
         direction = world_direction(position.azimuth_deg, position.altitude_deg, north_deg)
         sun, is_new = put_sun_by_time(context.scene, direction, self.as_keywords())
         select_alone(context, sun)
         for warning in warnings_of(time, position):
             self.report({"WARNING"}, warning[0].upper() + warning[1:])
+        heading = f", {self.heading:.2f}° the panorama's middle" if self.north_from == "PANORAMA" else ""
         return (
             f"{sun.name}: altitude {position.altitude_deg:.2f}°, azimuth {position.azimuth_deg:.2f}° "
-            f"clockwise from north{'' if is_new else ' (turned)'}"
+            f"clockwise from north{heading}{'' if is_new else ' (turned)'}"
         )
 
     def time(self):
@@ -138,12 +157,34 @@ class PANORAMA_OT_add_sun_by_time(Reporting, bpy.types.Operator):
         except ValueError as error:
             raise ValueError(f"{self.year}-{self.month:02}-{self.day:02}: there is no such day") from error
 
+    def find_heading(self, scene, position):
+        """Set the heading with which the panorama's strongest lamp has the sun's azimuth.
+
+        Says so where they are not equally high. Raises ValueError without a place, or without a lamp.
+        """
+        place = place_of(scene)
+        world_from_panorama = _orientation(place)
+        lamp = world_from_panorama @ strongest_lamps(map_for_lamps(place))[0].direction
+        north_deg = north_of(lamp, position.azimuth_deg)
+        self.north_from, self.heading = "PANORAMA", (north_deg - north_of(world_from_panorama[:, 0], 0)) % 360
+        altitude_deg = float(np.degrees(np.arcsin(np.clip(lamp[2], -1, 1))))
+        if abs(altitude_deg - position.altitude_deg) > SAME_SUN_DEG:
+            self.report(
+                {"WARNING"},
+                f"The panorama's strongest lamp stands at an altitude of {altitude_deg:.1f}°, the sun at "
+                f"{position.altitude_deg:.1f}°: check place, time, and whether this lamp is the sun",
+            )
+
     def north_in_world(self, scene):
         """Counter-clockwise from +Y [degrees]. Raises ValueError for a heading without a place."""
         if self.north_from == "WORLD":
             return self.north
-        rotation = place_of(scene).origin.matrix_world.to_quaternion().to_matrix()
-        return self.heading - pose_of(np.array(rotation))[0]  # of the middle, were +Y the north
+        return north_of(_orientation(place_of(scene))[:, 0], self.heading)
+
+
+def _orientation(place):
+    """world_from_panorama (3, 3), as the place's origin is turned."""
+    return np.array(place.origin.matrix_world.to_quaternion().to_matrix())
 
 
 classes = (PANORAMA_OT_add_sun_by_time,)

@@ -121,6 +121,16 @@ def world_direction(azimuth_deg, altitude_deg, north_deg: float = 0.0) -> np.nda
     return np.stack(parts, axis=-1)
 
 
+def north_of(direction: np.ndarray, azimuth_deg: float) -> float:
+    """The `north_deg` of a world in which what lies in a direction (3,) has this azimuth; from −180 to 180.
+
+    >>> north_of(world_direction(120.0, 30.0, north_deg=50.0), 120.0).__round__(6)
+    50.0
+    """
+    bearing_deg = np.degrees(np.arctan2(direction[0], direction[1]))
+    return float((azimuth_deg - bearing_deg + 180) % 360 - 180)
+
+
 def time_from_iso(text: str) -> datetime:
     """The time that an ISO 8601 text says, which must name its zone: a Z, or the offset from UTC.
 

@@ -5,6 +5,8 @@ import panoramas
 import pytest
 from mathutils import Matrix, Vector
 
+from expanded_panoramas.ibl_toolkit import equirectangular
+
 GOLDEN = {"latitude": 39.742476, "longitude": -105.1786}
 MOMENT = {"year": 2003, "month": 10, "day": 17, "hour": 12, "minute": 30, "utc_offset": -7}
 AZIMUTH_DEG, ALTITUDE_DEG = 194.34024, 90 - 50.11162 - 0.0163
@@ -71,6 +73,46 @@ def test_the_heading_of_the_panorama_follows_the_calibration(fresh_blend, tmp_pa
     assert off_deg(from_origin, shines_from(bpy)) < 0.1
 
 
+LAMP_UV, WIDTH = (0.3, 0.5 - ALTITUDE_DEG / 180), 256
+"""In the map of a level panorama: as high as the sun was."""
+
+
+@pytest.fixture
+def sunny(fresh_blend, tmp_path):
+    """A place turned by 50° whose panorama shows a lamp at LAMP_UV."""
+    image = np.full((WIDTH // 2, WIDTH, 3), 0.01, np.float32)
+    cosines = equirectangular.pixel_directions(WIDTH, WIDTH // 2) @ equirectangular.direction_from_uv(LAMP_UV)
+    image[cosines > np.cos(np.radians(2))] = 100
+    path = panoramas.write_panorama(tmp_path / "map.exr", image)
+    turn = np.array(Matrix.Rotation(np.radians(50), 3, "Z"))
+    _, place = panoramas.room_place(fresh_blend, path, panorama_from_world=turn.T)
+    fresh_blend.context.view_layer.update()
+    return place
+
+
+def test_the_panoramas_sun_tells_north(fresh_blend, sunny):
+    """The lamp is 0.2 turns left of the panorama's middle, so the middle looks 72° further to the right."""
+    bpy = fresh_blend
+    add(bpy, north_from="LAMP")
+    lamp = sunny.origin.matrix_world.to_3x3() @ Vector(equirectangular.direction_from_uv(LAMP_UV))
+    assert off_deg(shines_from(bpy), lamp) < 0.5
+    kept = dict(suns(bpy)[0]["panorama_sun_by_time"])
+    assert kept["north_from"] == "PANORAMA"
+    assert kept["heading"] == pytest.approx((AZIMUTH_DEG + 0.2 * 360) % 360, abs=0.5)
+    before = shines_from(bpy)
+    add(bpy, north_from="PANORAMA", heading=kept["heading"])
+    assert off_deg(shines_from(bpy), before) < 0.01
+
+
+def test_a_lamp_that_is_not_as_high_as_the_sun(fresh_blend, sunny):
+    reports, line = work(fresh_blend, north_from="LAMP")
+    assert reports == []
+    assert "° the panorama's middle" in line
+    ((kind, text),) = work(fresh_blend, north_from="LAMP", hour=15)[0]
+    assert kind == {"WARNING"}
+    assert text.startswith("The panorama's strongest lamp stands at an altitude of 39.9°, the sun at 18.7°")
+
+
 def test_a_heading_needs_a_panorama(fresh_blend):
     with pytest.raises(RuntimeError, match="has no panorama: calibrate one first"):
         add(fresh_blend, north_from="PANORAMA")
@@ -105,14 +147,11 @@ def work(bpy, **change):
 
     from expanded_panoramas.operators.sun_position import PANORAMA_OT_add_sun_by_time as operator
 
-    reports, given = (
-        [],
-        {**GOLDEN, **MOMENT, "method": "psa2020", "north_from": "WORLD", "north": 0.0, **change},
-    )
-    stand_in = SimpleNamespace(
-        **given, report=lambda *report: reports.append(report), as_keywords=lambda: given
-    )
+    given = {**GOLDEN, **MOMENT, "method": "psa2020", "north_from": "WORLD", "north": 0.0, **change}
+    reports, stand_in = [], SimpleNamespace(**given, as_keywords=lambda: given)
+    stand_in.report = lambda *report: reports.append(report)
     stand_in.time = lambda: operator.time(stand_in)
+    stand_in.find_heading = lambda *arguments: operator.find_heading(stand_in, *arguments)
     stand_in.north_in_world = lambda scene: operator.north_in_world(stand_in, scene)
     return reports, operator.work(stand_in, bpy.context)
 

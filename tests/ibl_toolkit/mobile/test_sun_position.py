@@ -9,6 +9,7 @@ import sunposition
 from expanded_panoramas.ibl_toolkit.mobile.sun_position import (
     METHODS,
     SunPosition,
+    north_of,
     sun_position,
     time_from_iso,
     warnings_of,
@@ -159,6 +160,12 @@ def test_bad_input_is_named(change, message):
     given = {"time": NOON, "latitude_deg": 50.0, "longitude_deg": 8.0, **change}
     with pytest.raises(ValueError, match=message):
         sun_position(**given)
+
+
+@pytest.mark.parametrize("north_deg", [-170, 0, 35, 180])
+def test_north_from_what_is_seen(north_deg):
+    seen = world_direction(250.0, 40.0, north_deg)
+    assert (north_of(seen, 250.0) - north_deg + 180) % 360 == pytest.approx(180)
 
 
 def test_a_north_that_is_no_number():
