@@ -14,7 +14,8 @@ import numpy as np
 from .errors import ImageError
 
 _GPANO = "http://ns.google.com/photos/1.0/panorama/"
-_LARGEST = 1 << 20  # bytes of a packet that is read
+LARGEST = 1 << 20
+"""Bytes of an XMP packet that is read."""
 _SIZES = (
     "FullPanoWidthPixels",
     "FullPanoHeightPixels",
@@ -124,8 +125,8 @@ def sphere_from_xmp(packet: bytes) -> PhotoSphere | None:
 
 def _properties(packet):
     """Text of each GPano property, be it an attribute or an element."""
-    if len(packet) > _LARGEST:
-        raise ImageError(f"photo sphere: XMP of {len(packet)} bytes, the limit is {_LARGEST}")
+    if len(packet) > LARGEST:
+        raise ImageError(f"photo sphere: XMP of {len(packet)} bytes, the limit is {LARGEST}")
     values, current = {}, []
     parser = expat.ParserCreate(namespace_separator=" ")
 

@@ -11,14 +11,13 @@ import zlib
 from pathlib import Path
 
 from .errors import ImageError
-from .photo_sphere import PhotoSphere, sphere_from_xmp
+from .photo_sphere import LARGEST, PhotoSphere, sphere_from_xmp
 
 _JPEG, _PNG = b"\xff\xd8", b"\x89PNG\r\n\x1a\n"
 _APP0, _APP1, _SCAN = 0xE0, 0xE1, 0xDA
 _NAMESPACE = b"http://ns.adobe.com/xap/1.0/\0"
 _KEYWORD = b"XML:com.adobe.xmp\0"
 _PLAIN = b"\0\0\0\0"  # not compressed; no language, no translated keyword
-_MOST = 65533 - len(_NAMESPACE)  # a segment's length has two bytes
 
 
 def read_photo_sphere(path) -> PhotoSphere | None:
@@ -83,9 +82,20 @@ def _in_png(data):
     while at + 12 <= len(data):
         length, name = struct.unpack(">I4s", data[at : at + 8])
         content = data[at + 8 : at + 8 + length]
-        if name == b"iTXt" and content.startswith(_KEYWORD + _PLAIN):
-            return content[len(_KEYWORD + _PLAIN) :]
+        if name == b"iTXt" and content.startswith(_KEYWORD):
+            return _text_of(content[len(_KEYWORD) :])
         if name == b"IEND":
             return None
         at += 12 + length
     raise ImageError(f"truncated: {len(data)} bytes, without an end")
+
+
+def _text_of(content):
+    """What follows an iTXt chunk's keyword: flag and method of compression, language, translation, text."""
+    text = content[2:].partition(b"\0")[2].partition(b"\0")[2]
+    if content[:1] != b"\1":
+        return text
+    try:
+        return zlib.decompressobj().decompress(text, LARGEST + 1)
+    except zlib.error as error:
+        raise ImageError(f"damaged: its compressed XMP: {error}") from error

@@ -1,6 +1,7 @@
 """What JPEG and PNG panoramas tell viewers: written, read back, read by another program, and refused."""
 
 import struct
+import zlib
 
 import cv2
 import numpy as np
@@ -133,11 +134,29 @@ def test_unsound_packets_are_refused(packet, message):
         sphere_from_xmp(packet)
 
 
+def compressed(packet):
+    return png_with(b"XML:com.adobe.xmp\0\1\0en\0title\0" + zlib.compress(packet))
+
+
+def png_with(content):
+    chunk = struct.pack(">I4s", len(content), b"iTXt") + content + bytes(4)
+    return b"\x89PNG\r\n\x1a\n" + chunk + struct.pack(">I4sI", 0, b"IEND", 0)
+
+
+def test_compressed_xmp_is_read(tmp_path):
+    (tmp_path / "a.png").write_bytes(compressed(packet_of(PROJECTION + CROPPED)))
+    assert read_photo_sphere(tmp_path / "a.png").size == (12, 6)
+    (tmp_path / "a.png").write_bytes(compressed(b" " * 2**24))
+    with pytest.raises(ImageError, match="XMP of 1048577 bytes, the limit is 1048576"):
+        read_photo_sphere(tmp_path / "a.png")
+
+
 @pytest.mark.parametrize(
     ("data", "message"),
     [
         (b"GIF89a", r"a\.jpg: neither JPEG nor PNG"),
         (b"\xff\xd8\xff\xe1\xff\xff", r"a\.jpg: truncated: 6 bytes, without a scan"),
+        (png_with(b"XML:com.adobe.xmp\0\1\0\0\0abc"), r"a\.jpg: damaged: its compressed XMP"),
         (b"\xff\xd8\x00\xe1\x00\x10", r"a\.jpg: damaged: no marker at byte 2"),
         (
             b"\x89PNG\r\n\x1a\n" + struct.pack(">I4s", 9, b"IHDR"),
