@@ -30,6 +30,11 @@ def test_the_box_room_takes_a_handful_of_triangles(mapping):
     assert len(coarse.triangles) < 120
 
 
+def test_large_maps_take_no_more():
+    """Here every 16th row and column is looked at first."""
+    assert len(checked(box_layer("equirectangular", 1024)).triangles) < 200
+
+
 @pytest.mark.parametrize("mapping", BOTH)
 def test_a_picture_on_a_wall_takes_the_triangles_to_begin_with(mapping):
     """Within one of the octahedron's faces: its vertices fit themselves to the picture."""
