@@ -66,13 +66,15 @@ def bounded_mesh(
     if not (np.isfinite(radius) and radius >= 0):
         raise ValueError(f"radius {radius} m must be finite and not below 0")
     pixels = MapPixels(layer)
-    count = np.count_nonzero(pixels.inside)
-    if not count:
+    if not pixels.inside.any():
         return BoundedMesh(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), dtype=np.int32))
     mesh = GrowingMesh(pixels, radius)
     lattice = None
-    for step in [step for step in _STEPS if step == 1 or count >= _FEWEST * step * step]:
-        is_first, lattice = lattice is None, Lattice(pixels, step, lattice)
+    for step in _STEPS:
+        finer = Lattice(pixels, step, lattice)
+        if step > 1 and len(finer.pixels) < _FEWEST:
+            continue
+        is_first, lattice = lattice is None, finer
         for triangles in _refined(mesh, lattice, error_px * pixel_angle(layer), is_first):
             if triangles > most_triangles:
                 raise ValueError(

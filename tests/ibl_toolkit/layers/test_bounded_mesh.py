@@ -35,6 +35,13 @@ def test_large_maps_take_no_more():
     assert len(checked(box_layer("equirectangular", 1024)).triangles) < 200
 
 
+def test_a_domain_between_the_rows_that_are_looked_at_first():
+    depth = box_depth("equirectangular", 512)
+    inside = np.ones(depth.shape, dtype=bool)
+    inside[2::4] = False  # of every 4th row the one in the middle
+    assert len(checked(layer_of("equirectangular", depth, inside)).triangles) < 400
+
+
 @pytest.mark.parametrize("mapping", BOTH)
 def test_a_picture_on_a_wall_takes_the_triangles_to_begin_with(mapping):
     """Within one of the octahedron's faces: its vertices fit themselves to the picture."""
