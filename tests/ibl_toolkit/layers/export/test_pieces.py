@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from box_layers import BOTH, HALF, is_closed
+from box_layers import BOTH, HALF, directions, is_closed
 from layered_box import layered_box, radiance_in
 
 from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb
@@ -42,6 +42,23 @@ def test_the_texture_fits_everywhere(mapping, mesh):
     panorama = layered_box(mapping, 48 if mapping == "cube map" else 64)
     for piece in pieces_of(panorama, 1.0, MESHES[mesh], texture_error_px=ERROR_PX):
         assert texture_errors(piece).max() < INSIDE_PX
+
+
+@pytest.mark.parametrize("mesh", MESHES)
+@pytest.mark.parametrize("mapping", BOTH)
+def test_every_pixel_of_the_domain_is_on_a_triangle(mapping, mesh):
+    panorama = layered_box(mapping, 48 if mapping == "cube map" else 64)
+    room, objects = panorama.layers
+    open_room = np.isinf(room.depth)
+    pieces = pieces_of(panorama, 1.0, MESHES[mesh])
+    for piece, inside in zip(pieces, (~open_room, open_room, objects.mask), strict=True):
+        towards = directions(mapping, inside.shape[1])[inside]
+        corners = piece.points[piece.triangles].astype(float)
+        # Counter-clockwise as the origin sees them: a direction within is on one side of all three planes.
+        sides = np.stack([np.cross(corners[:, k], corners[:, k - 2]) for k in range(3)], axis=1)
+        sides /= np.linalg.norm(sides, axis=2, keepdims=True)
+        within = (np.einsum("nk,tsk->nts", towards, sides) <= 1e-6).all(axis=2)
+        assert within.any(axis=1).all()
 
 
 def test_without_cutting_it_does_not_fit():
