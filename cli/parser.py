@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, export, layers, lights, render, sun, view
+from . import batch, build, calibrate, depth, export, layers, lights, probe, render, sun, view
 from .messages import warn
 
 VERBS = {
@@ -11,6 +11,7 @@ VERBS = {
     "build": build,
     "depth": depth,
     "lights": lights,
+    "probe": probe,
     "render": render,
     "layers": layers,
     "view": view,
