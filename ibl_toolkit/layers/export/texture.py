@@ -14,9 +14,8 @@ import numpy as np
 
 from ...images.png import srgb_codes
 from ..panorama import CUBE_MAP, Layer
-from ..rendered_view import sampled
 from ..summed_area import rectangle_sums, summed_area_table
-from .texture_coordinates import CubeChart, EquirectangularChart, chart_of
+from .texture_coordinates import CubeChart, EquirectangularChart
 
 BORDER = 4
 """[px] round the faces of a cube map, so that the first two mip levels don't mix them."""
@@ -25,8 +24,7 @@ _SPREAD = 16  # [px] beyond the domain
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """pixels: (h, w, 4) uint8, sRGB and alpha, top row first. chart: where the corners of triangles lie on
-    it."""
+    """pixels: (h, w, 4) uint8, sRGB and alpha, top row first. chart: where corners of triangles lie on it."""
 
     name: str
     pixels: np.ndarray
@@ -43,10 +41,7 @@ class Texture:
     def cut_to(self, part: Layer) -> Texture:
         """The same with the domain of a part of the layer as alpha."""
         pixels = self.pixels.copy()
-        alpha = part.mask.astype(np.float32)
-        if part.mapping == CUBE_MAP:
-            alpha = sampled(part, alpha, self.chart.texel_directions())
-        pixels[..., 3] = np.round(alpha * 255)
+        pixels[..., 3] = np.round(self.chart.texels(part, part.mask.astype(np.float32)) * 255)
         return Texture(part.name, pixels, self.chart)
 
     def is_seen_on(self, uv: np.ndarray) -> np.ndarray:
@@ -61,12 +56,14 @@ class Texture:
         high = np.ceil(uv.max(axis=1) * (width, height)).astype(np.int64) + 1
         across = (low[:, 0] < 0) * width  # the texel before the first is the last
         x0, x1 = low[:, 0] + across, np.minimum(high[:, 0] + across, 2 * width)
-        y0, y1 = low[:, 1].clip(0), high[:, 1].clip(None, height)
+        y0, y1 = low[:, 1].clip(0, height), high[:, 1].clip(0, height)
         return rectangle_sums(table, x0, y0, x1, y1, np.zeros(len(uv), dtype=np.int64)) > 0
 
 
 def texture_of(layer: Layer, exposure: float) -> Texture:
     """The layer's radiance times `exposure`, clipped to 0 to 1 and encoded as sRGB; opaque.
+
+    Of an equirectangular map only the rows that hold something of its domain, and a few beyond.
 
     Raises: ValueError for a layer without radiance, or with one that is NaN or infinite in its domain.
     """
@@ -75,10 +72,11 @@ def texture_of(layer: Layer, exposure: float) -> Texture:
     inside = layer.mask
     if not np.isfinite(layer.radiance[inside]).all():
         raise ValueError(f"{layer} has radiance that is NaN or infinite in its domain")
-    linear = spread(layer.radiance, inside, layer.mapping)
-    chart = chart_of(layer.mapping, layer.size[0], BORDER)
     if layer.mapping == CUBE_MAP:
-        linear = sampled(layer, linear, chart.texel_directions())
+        chart = CubeChart(layer.size[0] // 3, BORDER)
+    else:
+        chart = EquirectangularChart(layer.size[0], _rows(inside))
+    linear = chart.texels(layer, spread(layer.radiance, inside, layer.mapping))
     pixels = np.full((*linear.shape[:2], 4), 255, dtype=np.uint8)
     pixels[..., :3] = srgb_codes(linear, exposure)
     return Texture(layer.name, pixels, chart)
@@ -114,3 +112,14 @@ def _spread(values, inside):
     nearest[labels[inside]] = np.flatnonzero(inside)
     spread = values.reshape(-1, values.shape[-1])[nearest[labels]]
     return np.where((distance <= _SPREAD)[..., None], spread, 0).astype(np.float32)
+
+
+def _rows(inside):
+    """First and number of the rows that hold something of the domain, and of those to which it is spread.
+
+    A power of two, where the map has so many: old graphics cards make mip levels of no other textures.
+    """
+    rows, height = np.flatnonzero(inside.any(axis=1)), len(inside)
+    first, last = max(rows[0] - _SPREAD, 0), min(rows[-1] + _SPREAD, height - 1)
+    count = min(1 << int(last - first).bit_length(), height)
+    return int(min(first, height - count)), count

@@ -14,7 +14,8 @@ import numpy as np
 
 from ... import cube_map, equirectangular
 from ...environment_uv import on_pole
-from ..panorama import CUBE_MAP
+from ..panorama import Layer
+from ..rendered_view import sampled
 
 _OFF_FACE = 1e-6  # how far beyond a cube's face a corner may lie by rounding, in half faces
 _ROUNDING = 1e-9
@@ -22,15 +23,22 @@ _STEPS = 1 << 16  # texture coordinates nearer than this part of the image are o
 
 
 class EquirectangularChart:
-    """Texture coordinates on an equirectangular image of `width` px.
+    """Texture coordinates on an equirectangular image of `width` px, or on some of its `rows`: first, count.
 
     >>> chart = EquirectangularChart(8)
     >>> chart.uv(np.array([[[-1, 0.1, 0], [-1, -0.1, 0], [0, 0, 1]]]))[0, :, 0].round(2).tolist()
     [1.02, 0.98, 1.0]
     """
 
-    def __init__(self, width: int):
+    def __init__(self, width: int, rows: tuple[int, int] | None = None):
         self.pixels_per_radian = width / (2 * np.pi)
+        first, count = rows or (0, width // 2)
+        self._rows = slice(first, first + count)
+        self._top, self._part = first / (width // 2), count / (width // 2)
+
+    def texels(self, layer: Layer, values: np.ndarray) -> np.ndarray:
+        """The texture (h, w, ...) that values (H, W, ...) of the layer's map give."""
+        return values[self._rows]
 
     def uv(self, rays: np.ndarray) -> np.ndarray:
         """(n, k, 2) of the corners of triangles (k = 3), or of sides (k = 2), in the directions (n, k, 3).
@@ -48,16 +56,16 @@ class EquirectangularChart:
             number = int(np.argmax(wide.any(axis=1)))
             raise ValueError(f"triangle {number} holds a pole of the image: it must be cut there")
         lowest = np.floor(u.min(axis=1, keepdims=True) + _ROUNDING)
-        return np.stack([u - lowest, uv[..., 1]], axis=-1)
+        return np.stack([u - lowest, (uv[..., 1] - self._top) / self._part], axis=-1)
 
     def fits(self, rays: np.ndarray) -> np.ndarray:
-        """Whether triangles with corners in the directions (n, 3, 3) lie on one piece of the image: all
-        do."""
+        """Whether triangles with corners in the directions (n, 3, 3) lie on one piece: all do."""
         return np.ones(len(rays), dtype=bool)
 
     def direction(self, uv: np.ndarray) -> np.ndarray:
         """Unit directions (..., 3) of texture coordinates (..., 2)."""
-        return equirectangular.direction_from_uv(uv)
+        u, v = np.moveaxis(uv, -1, 0)
+        return equirectangular.direction_from_uv(np.stack([u, v * self._part + self._top], axis=-1))
 
 
 class CubeChart:
@@ -74,6 +82,13 @@ class CubeChart:
     def __init__(self, face_size: int, border: int):
         self.pixels_per_radian = 2 * face_size / np.pi
         self._face = face_size, border, face_size + 2 * border
+
+    def texels(self, layer: Layer, values: np.ndarray) -> np.ndarray:
+        """The texture (h, w, ...) that values (H, W, ...) of the layer's map give: borders go on beyond
+        faces."""
+        _, _, whole = self._face
+        u, v = ((np.arange(count * whole) + 0.5) / (count * whole) for count in (3, 2))
+        return sampled(layer, values, self.direction(np.stack(np.meshgrid(u, v), axis=-1)))
 
     def uv(self, rays: np.ndarray) -> np.ndarray:
         """(n, k, 2) of the corners of triangles (k = 3), or of sides (k = 2), in the directions (n, k, 3).
@@ -104,18 +119,6 @@ class CubeChart:
         point = cube_map.point_on_face(face, st[..., 0], st[..., 1])
         return point / np.linalg.norm(point, axis=-1, keepdims=True)
 
-    def texel_directions(self) -> np.ndarray:
-        """Directions (2n, 3n, 3) of the texels' centres, borders included: they go on beyond the faces."""
-        _, _, whole = self._face
-        u, v = ((np.arange(count * whole) + 0.5) / (count * whole) for count in (3, 2))
-        uv = np.stack(np.meshgrid(u, v), axis=-1)
-        return self.direction(uv)
-
-
-def chart_of(mapping: str, width: int, border: int) -> EquirectangularChart | CubeChart:
-    """The chart of a map of `width` px; `border` [px] is that round the faces of a cube map's texture."""
-    return CubeChart(width // 3, border) if mapping == CUBE_MAP else EquirectangularChart(width)
-
 
 def shared_vertices(triangles: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """One vertex for all corners that are one point (triangles (T, 3)) with one texture coordinate (T, 3, 2).
@@ -129,8 +132,9 @@ def shared_vertices(triangles: np.ndarray, uv: np.ndarray) -> tuple[np.ndarray, 
     >>> point.tolist(), triangles.tolist()
     ([0, 0, 1, 2, 3], [[1, 2, 3], [0, 3, 4]])
     """
-    steps = np.rint(uv.reshape(-1, 2) * _STEPS).astype(np.int64) + _STEPS  # u is not below -1
-    key = (triangles.reshape(-1).astype(np.int64) * (4 * _STEPS) + steps[:, 0]) * (4 * _STEPS) + steps[:, 1]
+    # Modulo 4: the coordinates of one point are less than that apart.
+    u, v = np.rint(uv.reshape(-1, 2) * _STEPS).astype(np.int64).T % (4 * _STEPS)
+    key = (triangles.reshape(-1).astype(np.int64) * (4 * _STEPS) + u) * (4 * _STEPS) + v
     _, first, which = np.unique(key, return_index=True, return_inverse=True)
     return triangles.reshape(-1)[first], uv.reshape(-1, 2)[first], which.reshape(-1, 3)
 

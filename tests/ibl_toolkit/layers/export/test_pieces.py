@@ -194,6 +194,22 @@ def test_a_seam_vertex_is_two_and_no_triangle_runs_back_over_the_image():
     assert set(piece.uv[on_seam & (np.abs(piece.points[:, 2]) < 1), 0].round(6).tolist()) == {0.0, 1.0}
 
 
+@pytest.mark.parametrize("mesh", MESHES)
+def test_of_a_small_domain_few_rows_are_kept(mesh):
+    towards = directions("equirectangular", 256)
+    depth = np.where(towards @ (1, 1, 0.2) > 1.41, 2, np.nan).astype(np.float32)
+    attributes = {"depth": depth, "radiance": radiance_in(towards)}
+    small = LayeredPanorama((Layer("small", "equirectangular", attributes),), np.eye(3), np.zeros(3), 0.1)
+    piece = pieces_of(small, 1.0, MESHES[mesh])[0]
+    assert 16 < np.count_nonzero((~np.isnan(depth)).any(axis=1)) + 32 <= 64
+    assert piece.texture.pixels.shape == (64, 256, 4)
+    assert texture_errors(piece).max() < INSIDE_PX
+    assert piece.masked == (mesh == "mesh")
+    if piece.masked:
+        assert not piece.texture.pixels[[0, -1], :, 3].any()  # so beyond the rows there is nothing
+        assert np.count_nonzero(piece.texture.pixels[..., 3]) == np.count_nonzero(~np.isnan(depth))
+
+
 def test_exposure_multiplies_and_clips():
     pixels = pieces_of(layered_box(names=("walls",)), 4.0)[0].texture.pixels
     assert pixels[..., :3].max() == 255
