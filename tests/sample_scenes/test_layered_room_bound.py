@@ -19,13 +19,14 @@ def colour(points):
     return (0.5 + 0.1 * points).astype(np.float32)
 
 
-def room(scale=1.0, name="room", inside=True):
+def room(scale=1.0, name="room", inside=True, mapping="equirectangular", width=512):
     """A room whose walls are ``scale`` times as far away, of the true one's colours; black if scaled."""
-    rays = directions("equirectangular", 512)
-    depth = box_depth("equirectangular", 512) * np.float32(scale)
+    rays = directions(mapping, width)
+    depth = box_depth(mapping, width) * np.float32(scale)
     radiance = colour(rays * depth[..., None]) * (scale == 1)
     depth = np.where(inside, depth, np.float32(np.nan))
-    return Layer(name, "equirectangular", {"depth": depth, "radiance": radiance})
+    radiance[np.isnan(depth)] = np.nan
+    return Layer(name, mapping, {"depth": depth, "radiance": radiance})
 
 
 def panorama(*layers):
@@ -46,6 +47,27 @@ def test_each_point_has_the_colour_of_the_layer_whose_surface_it_is_on(others):
         view = bound_view(panorama(*order), CAMERA, distance)
         np.testing.assert_allclose(view.radiance, colour(points), atol=4e-3)
         np.testing.assert_allclose(view.depth, np.linalg.norm(points - CAMERA.eye, axis=2), rtol=1e-5)
+
+
+def test_a_cube_map_is_looked_up_over_its_edges():
+    distance, points = true_distance()
+    view = bound_view(panorama(room(mapping="cube map", width=384)), CAMERA, distance)
+    np.testing.assert_allclose(view.radiance, colour(points), atol=4e-3)
+
+
+def test_in_a_layer_that_jumps_each_side_keeps_its_colour():
+    """Pixels of a nearer, black surface beside a direction have no say in the wall's colour."""
+    card = np.abs(directions("equirectangular", 512)[..., 1]) < 0.2
+    wall, black = room(), room(0.5, "black")
+    both = {
+        name: np.where(card if name == "depth" else card[..., None], black.attributes[name], values)
+        for name, values in wall.attributes.items()
+    }
+    distance, points = true_distance()
+    view = bound_view(panorama(Layer("all", "equirectangular", both)), CAMERA, distance)
+    seen = view.radiance.any(axis=2)
+    assert 0.2 < seen.mean() < 0.9
+    np.testing.assert_allclose(view.radiance[seen], colour(points)[seen], atol=0.02)
 
 
 def test_where_no_layer_looks_is_a_hole():

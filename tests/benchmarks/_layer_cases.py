@@ -1,0 +1,120 @@
+"""What `layer_views` looks at: the sample room in layers of several kinds, and its true views; all cached."""
+
+from __future__ import annotations
+
+import math
+import pathlib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces
+from expanded_panoramas.cycles_integration.layer_scene import frame_of
+from expanded_panoramas.ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
+from expanded_panoramas.ibl_toolkit.layers.mip import halved
+from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
+from expanded_panoramas.ibl_toolkit.layers.storage import read_layers, write_layers
+from expanded_panoramas.sample_scenes.layered_room import capture, scene, sizes, views
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TWO, ONE, MADE, SURFACES = "room and objects", "one layer", "made of one RGB-D", "successive surfaces"
+KINDS = {
+    TWO: "the room, and the objects in it, rendered by themselves",
+    ONE: "what the origin sees, as one layer: meshes bridge its jumps",
+    MADE: "layers_from_rgbd of that one layer: what was hidden is made up",
+    SURFACES: "capture_surfaces: what can be seen from within the radius, rendered",
+}
+TABLE = (*views.TABLE_8_1, views.C1)
+ASIDE = np.array([-1.0, 1.0, 0.0]) / math.sqrt(2)  # from the centre to C1
+DISTANCES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How much is measured. Widths of layers [px]; the widest is captured, the others are its mip levels."""
+
+    folder: pathlib.Path
+    charts: pathlib.Path
+    widths: tuple[int, ...] = (1024, 2048, 4096, 8192)
+    usual: int = 4096
+    capture_samples: int = 8
+    size: tuple[int, int] = (960, 540)
+    truth_samples: int = 256
+    table: tuple[views.View, ...] = TABLE
+    distances: tuple[float, ...] = DISTANCES
+
+
+FULL = Settings(ROOT / "out" / "bench" / "layers", ROOT / "docs" / "charts")
+TOY = Settings(
+    *[ROOT / "out" / "bench" / "layers_toy"] * 2,
+    widths=(256, 512),
+    usual=512,
+    capture_samples=4,
+    size=(192, 108),
+    truth_samples=16,
+    table=(views.TABLE_8_1[10], views.C1),
+    distances=(0.5, 1.5),
+)
+
+
+def aside(distance: float) -> views.View:
+    """A view like C1, an eye's distance [m] from the centre."""
+    eye = np.add(sizes.ORIGIN, distance * ASIDE)
+    return views.View(f"{distance} m", tuple(eye.tolist()), views.C1.direction)
+
+
+def panorama(settings: Settings, kind: str, width: int) -> LayeredPanorama:
+    """The room in layers of a kind, so many pixels wide."""
+    if kind == SURFACES:
+        return _captured(settings, kind, width, _successive)
+    widest = _captured(settings, TWO, settings.widths[-1], _room_and_objects)
+    found = replace(widest, layers=tuple(_narrower(layer, width) for layer in widest.layers))
+    if kind == TWO:
+        return found
+    seen = _nearest(found)
+    if kind == ONE:
+        return replace(found, layers=(seen,))
+    return layers_from_rgbd(seen.radiance, seen.depth, found.radius, origin=found.origin)
+
+
+def truth(settings: Settings, view: views.View) -> tuple[np.ndarray, np.ndarray]:
+    """A view's radiance (H, W, 3), and the distance of its surfaces (H, W) [m] along forward."""
+    path = settings.folder / f"truth_{view.name.replace(' ', '')}.npz"
+    if not path.exists():
+        room = scene.new_room()
+        radiance = capture.render_view(room, view, settings.size, settings.truth_samples)
+        np.savez(path, radiance=radiance, distance=capture.render_view_distance(room, view, settings.size))
+    with np.load(path) as kept:
+        return kept["radiance"], kept["distance"]
+
+
+def _captured(settings, kind, width, render):
+    folder = settings.folder / f"{kind.replace(' ', '_')}_{width}"
+    if not (folder / "panorama.xml").exists():
+        write_layers(render(settings, width), folder)
+    return read_layers(folder)
+
+
+def _room_and_objects(settings, width):
+    return capture.capture_layers(scene.new_room(), width, settings.capture_samples)
+
+
+def _successive(settings, width):
+    options = LayerCapture(width=width, samples=settings.capture_samples, denoise=True)
+    room = scene.new_room()
+    return capture_surfaces(room, frame_of(room, sizes.ORIGIN), sizes.RADIUS, options)
+
+
+def _narrower(layer, width):
+    while layer.size[0] > width:
+        layer = halved(layer)
+    return layer
+
+
+def _nearest(found):
+    """What the origin sees of all layers, as one."""
+    depths = np.stack([np.where(layer.mask, layer.depth, np.inf) for layer in found.layers])
+    first = depths.argmin(axis=0)
+    radiance = np.stack([layer.radiance for layer in found.layers])
+    radiance = np.take_along_axis(radiance, first[None, ..., None], axis=0)[0]
+    return Layer("seen", found.layers[0].mapping, {"radiance": radiance, "depth": depths.min(axis=0)})

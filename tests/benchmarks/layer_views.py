@@ -1,0 +1,169 @@
+"""Views of the sample room in layers by each method, against Cycles and the bound; their cost.
+
+Methods x views of Table 8.1 and C1; resolutions; kinds of layers; distances from the centre until beyond the
+radius. Writes docs/charts/layer_views.json and .png. Captures and truths are kept in out/bench/layers/. With
+--toy all is tiny and goes to out/bench/layers_toy/. Seconds are the processor's; memory is what the
+process takes beside its panorama, and needs Linux.
+"""
+
+import json
+import os
+import pathlib
+import sys
+import time
+
+import _layer_cases as cases
+import _layer_charts as charts
+import flip_evaluator
+import numpy as np
+
+from expanded_panoramas import cycles_integration
+from expanded_panoramas.ibl_toolkit import metrics
+from expanded_panoramas.ibl_toolkit.layers.bounded_mesh import bounded_mesh
+from expanded_panoramas.ibl_toolkit.layers.layer_mesh import quadtree_mesh, quadtree_of
+from expanded_panoramas.ibl_toolkit.layers.mesh_view import mesh_view
+from expanded_panoramas.ibl_toolkit.layers.view_methods import METHODS
+from expanded_panoramas.sample_scenes.layered_room.bound import bound_view
+from expanded_panoramas.sample_scenes.layered_room.views import C1, pinhole
+
+BOUND = "bound"
+DEFINITIONS = {
+    "psnr": "dB of sRGB display values against Cycles, holes black",
+    "flip": "mean of NVIDIA's LDR-FLIP, 67 pixels per degree",
+    "holes": "pixels",
+    "prepare_seconds": "processor seconds of making meshes, which serve all views",
+    "seconds": "processor seconds of a view, from layers or prepared meshes",
+    "memory": "by how much the resident set of the process grew at most [bytes] while preparing and drawing",
+    BOUND: "the true surfaces at the pixels' centres, in the layers' colours",
+}
+
+
+def main():
+    """Measure, and write figures and charts."""
+    settings = cases.TOY if "--toy" in sys.argv else cases.FULL
+    settings.folder.mkdir(parents=True, exist_ok=True)
+    rows = [row for kind, width, seen in plan(settings) for row in measured(settings, kind, width, seen)]
+    document = {
+        "cores": os.cpu_count(),
+        "size": settings.size,
+        "truth_samples": settings.truth_samples,
+        "capture_samples": settings.capture_samples,
+        "kinds": cases.KINDS,
+        "definitions": DEFINITIONS,
+        "usual": settings.usual,
+        "summary": summary(settings, rows),
+        "rows": rows,
+    }
+    text = json.dumps(document, indent=1, ensure_ascii=False)
+    (settings.charts / "layer_views.json").write_text(text + "\n", encoding="utf-8")
+    charts.draw(document, settings.charts / "layer_views.png")
+    print(json.dumps(document["summary"], indent=1))
+
+
+def plan(settings):
+    """Kinds, widths, and the views to be seen of each."""
+    far = [cases.aside(distance) for distance in settings.distances]
+    for width in settings.widths:
+        yield cases.TWO, width, [*settings.table, *far] if width == settings.usual else [C1]
+    for kind in (cases.ONE, cases.MADE, cases.SURFACES):
+        yield kind, settings.usual, list(settings.table)
+
+
+def measured(settings, kind, width, seen):
+    """Rows of one panorama: the bound, and each method, in all these views."""
+    panorama = cases.panorama(settings, kind, width)
+    for view in seen:
+        camera, (_, distance) = pinhole(view, *settings.size), cases.truth(settings, view)
+        found = bound_view(panorama, camera, distance)
+        yield figures(settings, view, found) | {"kind": kind, "width": width, "method": BOUND}
+    for method in METHODS:
+        held = forget_memory()
+        start = time.process_time()
+        render = prepared(method, panorama)
+        prepare_seconds = time.process_time() - start
+        for view in seen:
+            start = time.process_time()
+            found = render(panorama, pinhole(view, *settings.size))
+            seconds = time.process_time() - start
+            yield figures(settings, view, found) | {
+                "kind": kind,
+                "width": width,
+                "method": method,
+                "prepare_seconds": round(prepare_seconds, 2),
+                "seconds": round(seconds, 2),
+                "memory": memory("VmHWM") - held,
+                "triangles": found.triangles,
+            }
+        print(f"layer_views: {kind}, {width} px, {method}", file=sys.stderr, flush=True)
+
+
+def prepared(method, panorama):
+    """A function of panorama and camera that has its meshes already, if the method has any to keep."""
+    makers = {
+        "quadtree": lambda layer: quadtree_mesh(layer, quadtree_of(layer)),
+        "mesh": lambda layer: bounded_mesh(layer, panorama.radius),
+    }
+    if method not in makers:
+        return METHODS[method]
+    meshes = [makers[method](layer) for layer in panorama.layers]
+    return lambda panorama, camera: mesh_view(panorama, camera, meshes, cut=method == "mesh")
+
+
+def figures(settings, view, found):
+    """How far a view is from the truth."""
+    radiance, _ = cases.truth(settings, view)
+    shown = [metrics.display_values(picture).astype(np.float32) for picture in (radiance, found.radiance)]
+    return {
+        "view": view.name,
+        "from_centre": round(float(np.linalg.norm(np.subtract(view.eye, cases.sizes.ORIGIN))), 3),
+        "psnr": round(metrics.psnr(found.radiance, radiance), 2),
+        "flip": round(float(flip_evaluator.evaluate(*shown, "LDR", applyMagma=False)[1]), 4),
+        "holes": int(np.count_nonzero(found.holes)),
+    }
+
+
+def summary(settings, rows):
+    """What was to be reached at C1, with the usual layers."""
+    at_c1 = {
+        row["method"]: row
+        for row in rows
+        if (row["kind"], row["width"], row["view"]) == (cases.TWO, settings.usual, C1.name)
+    }
+    best = max(METHODS, key=lambda method: at_c1[method]["psnr"])
+    shares = {
+        method: round(at_c1[method]["triangles"] / at_c1["grid"]["triangles"], 5)
+        for method in ("quadtree", "mesh")
+    }
+    widest = {
+        row["method"]: row for row in rows if row["kind"] == cases.TWO and row["width"] == settings.widths[-1]
+    }
+    return {
+        "best_method": best,
+        "best_below_bound_db": round(at_c1[BOUND]["psnr"] - at_c1[best]["psnr"], 2),
+        "best_holes": at_c1[best]["holes"],
+        "triangles_of_grid": shares,
+        "quadtree_below_grid_db": round(at_c1["grid"]["psnr"] - at_c1["quadtree"]["psnr"], 2),
+        "mesh_below_quadtree_db": round(at_c1["quadtree"]["psnr"] - at_c1["mesh"]["psnr"], 2),
+        "widest_adaptive_seconds": widest["adaptive"]["seconds"],
+        "widest_prepare": {
+            method: [widest[method]["prepare_seconds"], widest[method]["memory"]]
+            for method in ("quadtree", "mesh")
+        },
+    }
+
+
+def forget_memory():
+    """Begin anew to look for the largest resident set; the present one [bytes]."""
+    pathlib.Path("/proc/self/clear_refs").write_text("5")
+    return memory("VmRSS")
+
+
+def memory(name):
+    """The resident set [bytes], VmRSS, or the largest since `forget_memory`, VmHWM."""
+    status = pathlib.Path("/proc/self/status").read_text()
+    return int(next(line for line in status.splitlines() if line.startswith(name)).split()[1]) * 1024
+
+
+if __name__ == "__main__":
+    cycles_integration.register()
+    main()
