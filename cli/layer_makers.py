@@ -5,11 +5,9 @@ from contextlib import ExitStack, contextmanager
 import numpy as np
 
 from ..ibl_toolkit.images import read_rgbd
-from ..ibl_toolkit.layers.making.continuous import continuous_layers
 from ..ibl_toolkit.layers.making.from_points import layers_from_points
-from ..ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
+from ..ibl_toolkit.layers.making.from_rgbd import layers_of
 from ..ibl_toolkit.layers.making.ply import read_ply
-from ..ibl_toolkit.layers.making.uncovered import usual_radius
 from . import blender
 from .job import naming, open_job, place_in, rebuild
 
@@ -21,14 +19,7 @@ def from_rgbd(path, options, progress):
     with progress.step("reading"):
         rgbd = read_rgbd(path, frame_needed=False)
     with progress.step("layers"), naming(path):
-        return layers_from_rgbd(
-            rgbd.image,
-            rgbd.depth,
-            usual_radius(rgbd.depth) if options.radius is None else options.radius,
-            world_from_panorama=rgbd.world_from_panorama,
-            origin=(0.0, 0.0, rgbd.camera_height),
-            count=options.layers,
-        )
+        return layers_of(rgbd, options.radius, options.layers)
 
 
 def from_points(path, options, progress):
@@ -82,9 +73,10 @@ def _split(captured, options, tell):
     """Successive surfaces as continuous layers, unless they are wanted as they are."""
     if options.surfaces:
         return captured
+    from ..cycles_integration.layer_capture import split_surfaces
+
     tell("splitting")
-    surfaces = [layer.name for layer in captured.layers if layer.name.startswith("surface")]
-    return continuous_layers(captured, surfaces)
+    return split_surfaces(captured, options.layers)
 
 
 @contextmanager

@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 from mathutils import Matrix
 
+from ..ibl_toolkit.layers.making.continuous import continuous_layers
 from ..ibl_toolkit.layers.making.uncovered import (
     MARGIN_PX,
     can_be_seen,
@@ -38,6 +39,8 @@ LEAST_SHARE = 1e-4
 """A layer that would show less of the sphere is not made."""
 RIM = 2
 """Rays are traced so many pixels beyond a domain, for the denoiser."""
+SURFACE = "surface"
+"""Names of layers that follow each other along the rays begin with it."""
 INFINITY = 1e5
 """Rays that meet no more surface begin here [m]."""
 
@@ -65,6 +68,12 @@ def capture_surfaces(
         return surfaces_of(taken, world_from_panorama, radius, options, tell)
 
 
+def split_surfaces(captured: LayeredPanorama, count: int | None = None) -> LayeredPanorama:
+    """Continuous layers of what `capture_surfaces` gives: see `continuous_layers`."""
+    surfaces = [layer.name for layer in captured.layers if layer.name.startswith(SURFACE)]
+    return continuous_layers(captured, surfaces, count)
+
+
 def surfaces_of(taken, world_from_panorama, radius, options, tell=lambda step: None):
     """What `capture_surfaces` gives, of a temporary scene with its camera; its settings are changed."""
     frame = np.array(world_from_panorama, dtype=np.float64)
@@ -90,7 +99,7 @@ class _Rays:
         kept = np.ones(self.is_ended.shape, bool)
         fine_start = np.zeros(self._fine(kept).shape, np.float32)
         for number in range(1, self.options.most + 1):
-            name = f"surface {number}"
+            name = f"{SURFACE} {number}"
             tell(name)
             layer, self.fine_depth = self._layer(name, fine_start, kept, number)
             yield layer

@@ -45,7 +45,7 @@ class PanoramaLayers(bpy.types.PropertyGroup):
     most: IntProperty(
         name="Layers",
         description="Number of layers, at most: each shows what hides behind the one before. Fewer are made "
-        "where nothing more would come into sight",
+        "where nothing more would come into sight; far sides of objects get further ones",
         default=4,
         min=1,
         soft_max=8,

@@ -6,16 +6,16 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ..cycles_integration import roles
-from ..cycles_integration.layer_capture import LayerCapture
+from ..cycles_integration.layer_capture import LayerCapture, capture_surfaces, split_surfaces
 from ..cycles_integration.layer_objects import add_layers
+from ..cycles_integration.layer_scene import frame_of
 from ..cycles_integration.pieces import PIECE
 from ..cycles_integration.place_layers import capture_place
 from ..cycles_integration.rgbd_place import NAME as DEPTH
 from ..ibl_toolkit.images import is_rgbd, read_rgbd
 from ..ibl_toolkit.images.atomic import new_folder, refuse_unwritable
 from ..ibl_toolkit.layers.export.writing import export_layers
-from ..ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
-from ..ibl_toolkit.layers.making.uncovered import usual_radius
+from ..ibl_toolkit.layers.making.from_rgbd import layers_of
 from ..ibl_toolkit.layers.storage import read_layers, write_layers
 from ..ibl_toolkit.layers.xml_file import NAME
 from . import progress
@@ -44,25 +44,24 @@ def make_layers(scene, tell, folder, radius, width, most):
 
 def _captured(scene, tell, radius, width, most):
     path = bpy.path.abspath(scene.panorama_set.image_path)
+    if not path:
+        cycles = scene.cycles
+        options = LayerCapture(width, cycles.samples, most, cycles.use_denoising, cycles.seed)
+        return split_surfaces(capture_surfaces(scene, frame_of(scene), radius, options, tell), most)
     if [thing.get(PIECE) for thing in roles.real_objects(scene)] != [DEPTH] or not is_rgbd(path):
-        return capture_place(scene, radius, LayerCapture(width=width, samples=1, most=most), tell)
+        options = LayerCapture(width=width, samples=1, most=most)
+        return split_surfaces(capture_place(scene, radius, options, tell), most)
     tell("layers")  # of the file's own depth, which that one surface follows only so far
-    rgbd = read_rgbd(path)
-    return layers_from_rgbd(
-        rgbd.image,
-        rgbd.depth,
-        usual_radius(rgbd.depth) if radius is None else radius,
-        world_from_panorama=rgbd.world_from_panorama,
-        origin=(0.0, 0.0, rgbd.camera_height),
-        count=most,
-    )
+    return layers_of(read_rgbd(path), radius, most)
 
 
 def making_missing(scene) -> str:
-    """What Make Layers needs."""
-    if progress.surfaces_missing(scene):
-        return progress.surfaces_missing(scene)
-    return "" if scene.panorama_layers.folder else "Choose a folder for the layers"
+    """What Make Layers needs: a place, or without a panorama a scene and the camera where it is captured."""
+    if scene.panorama_set.image_path:
+        missing = progress.surfaces_missing(scene)
+    else:
+        missing = "" if scene.camera else "Open a panorama, or add a camera to a scene of your own"
+    return missing or ("" if scene.panorama_layers.folder else "Choose a folder for the layers")
 
 
 def layers_missing(scene) -> str:
@@ -73,8 +72,9 @@ def layers_missing(scene) -> str:
 
 class PANORAMA_OT_make_layers(LongWork, bpy.types.Operator):
     """Make a panorama in layers of the place: what is seen from the point of capture, and behind it what
-    comes into sight within the radius. It goes into the folder, in the stead of layers that are there.
-    Seconds to minutes, in which you can go on working; Esc cancels"""
+    comes into sight within the radius. Without a panorama, Cycles renders it of the scene itself from where
+    its camera stands, with the scene's samples. It goes into the folder, in the stead of layers that are
+    there. Seconds to minutes, in which you can go on working; Esc cancels"""
 
     bl_idname = "panorama.make_layers"
     bl_label = "Make Layers"

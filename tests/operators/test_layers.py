@@ -7,6 +7,7 @@ from layered_box import ORIGIN, ROTATION, layered_box, radiance_in
 
 from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.images import RGBD, write_rgbd
+from expanded_panoramas.ibl_toolkit.layers.making.check import check_layers
 from expanded_panoramas.ibl_toolkit.layers.storage import read_layers, write_layers
 
 WIDTH = 128
@@ -37,7 +38,7 @@ def test_a_place_becomes_layers(fresh_blend, room, tmp_path):
     panorama = read_layers(tmp_path / "layers")
     first, *behind = panorama.layers
     assert first.size == (WIDTH, WIDTH // 2)
-    assert first.mask.all()
+    assert check_layers(panorama).sound
     assert behind
     assert all(0 < layer.mask.mean() < 0.5 for layer in behind)
     assert panorama.radius == pytest.approx(0.4)
@@ -71,6 +72,29 @@ def test_of_an_rgbd_panorama_the_file_s_own_depth_is_taken(fresh_blend, tmp_path
     assert (np.abs(nearest - depth) < 0.01).mean() > 0.98
     np.testing.assert_allclose(panorama.world_from_panorama, ROTATION, atol=1e-6)
     assert panorama.radius > 0.4  # half of what is nearest, none being given
+
+
+def test_without_a_panorama_the_scene_itself_is_captured(fresh_blend, tmp_path):
+    import small_scenes as small
+
+    scene = fresh_blend.context.scene
+    for depth, colour, size in ((3, (0, 1, 0, 1), 8), (1.5, (1, 0, 0, 1), 0.5)):
+        small.add_plane(
+            scene, small.material("ShaderNodeEmission", Color=colour), size, (depth, 0, 1), (-1, 0, 0)
+        )
+    scene.panorama_layers.folder = str(tmp_path / "layers")
+    assert reason(fresh_blend, "make_layers") == "Open a panorama, or add a camera to a scene of your own"
+    small.add_camera(scene, (0, 0, 1), (1, 0, 1), field_of_view=1)
+    scene.panorama_layers.width, scene.panorama_layers.radius, scene.cycles.samples = WIDTH, 0.4, 1
+    assert fresh_blend.ops.panorama.make_layers() == {"FINISHED"}
+    panorama = read_layers(tmp_path / "layers")
+    ahead = WIDTH // 4, WIDTH // 2
+    there = [layer for layer in panorama.layers if layer.mask[ahead]]
+    hidden = [layer for layer in there if layer.depth[ahead] > 2]
+    np.testing.assert_allclose(min(layer.depth[ahead] for layer in there), 1.5, rtol=2e-3)
+    np.testing.assert_allclose(hidden[0].depth[ahead], 3, rtol=2e-3)
+    np.testing.assert_allclose(hidden[0].radiance[ahead], (0, 1, 0), atol=1e-3)
+    np.testing.assert_allclose(panorama.origin, (0, 0, 1), atol=1e-6)
 
 
 def test_opened_they_are_objects(fresh_blend, box):

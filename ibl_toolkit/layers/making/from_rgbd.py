@@ -7,10 +7,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...images import RGBD
 from ..panorama import LayeredPanorama, refuse_other_place
 from .discontinuities import nearness
 from .grid import PixelGrid, mapping_of_size
 from .splitting import split_layers
+from .uncovered import usual_radius
+
+
+def layers_of(rgbd: RGBD, radius: float | None = None, count: int | None = None) -> LayeredPanorama:
+    """`layers_from_rgbd` of an RGB-D panorama where it stands; radius None: `usual_radius`."""
+    return layers_from_rgbd(
+        rgbd.image,
+        rgbd.depth,
+        usual_radius(rgbd.depth) if radius is None else radius,
+        world_from_panorama=rgbd.world_from_panorama,
+        origin=(0.0, 0.0, rgbd.camera_height),
+        count=count,
+    )
 
 
 def layers_from_rgbd(
