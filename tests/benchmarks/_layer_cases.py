@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces
+from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces, split_surfaces
 from expanded_panoramas.cycles_integration.layer_scene import frame_of
 from expanded_panoramas.ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
 from expanded_panoramas.ibl_toolkit.layers.mip import halved
@@ -22,25 +22,33 @@ KINDS = {
     TWO: "the room, and the objects in it, rendered by themselves",
     ONE: "what the origin sees, as one layer: meshes bridge its jumps",
     MADE: "layers_from_rgbd of that one layer: what was hidden is made up",
-    SURFACES: "capture_surfaces: what can be seen from within the radius, rendered",
+    SURFACES: "split_surfaces of capture_surfaces: what is seen from within the radius, rendered",
 }
 TABLE = (*views.TABLE_8_1, views.C1)
 ASIDE = np.array([-1.0, 1.0, 0.0]) / math.sqrt(2)  # from the centre to C1
-DISTANCES = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
+DISTANCES = (0.0, 0.5, 1.0, 1.5, 2.0)
+COMPARED = tuple(view for view in TABLE if view.name in ("S6", "S10", "S12", "C1"))
+"""Views of all kinds of layers: before a sofa, down at the floor's lamps, to the poufs, and C1."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How much is measured. Widths of layers [px]; the widest is captured, the others are its mip levels."""
+    """How much is measured.
+
+    widths: of layers [px]; the widest is captured, the others are its mip levels. usual: the width at which
+    all views are looked at; kinds_width: that at which kinds of layers are compared.
+    """
 
     folder: pathlib.Path
     charts: pathlib.Path
     widths: tuple[int, ...] = (1024, 2048, 4096, 8192)
     usual: int = 4096
-    capture_samples: int = 8
+    kinds_width: int = 2048
+    capture_samples: int = 2  # of the widest: a pixel of the usual width is the mean of four
     size: tuple[int, int] = (960, 540)
-    truth_samples: int = 256
+    truth_samples: int = 16  # and denoised, as the capture is
     table: tuple[views.View, ...] = TABLE
+    compared: tuple[views.View, ...] = COMPARED
     distances: tuple[float, ...] = DISTANCES
 
 
@@ -49,10 +57,12 @@ TOY = Settings(
     *[ROOT / "out" / "bench" / "layers_toy"] * 2,
     widths=(256, 512),
     usual=512,
+    kinds_width=256,
     capture_samples=4,
     size=(192, 108),
     truth_samples=16,
     table=(views.TABLE_8_1[10], views.C1),
+    compared=(views.C1,),
     distances=(0.5, 1.5),
 )
 
@@ -100,9 +110,9 @@ def _room_and_objects(settings, width):
 
 
 def _successive(settings, width):
-    options = LayerCapture(width=width, samples=settings.capture_samples, denoise=True)
+    options = LayerCapture(width=width, samples=9, denoise=True)
     room = scene.new_room()
-    return capture_surfaces(room, frame_of(room, sizes.ORIGIN), sizes.RADIUS, options)
+    return split_surfaces(capture_surfaces(room, frame_of(room, sizes.ORIGIN), sizes.RADIUS, options))
 
 
 def _narrower(layer, width):

@@ -19,6 +19,7 @@ import numpy as np
 
 from expanded_panoramas import cycles_integration
 from expanded_panoramas.ibl_toolkit import metrics
+from expanded_panoramas.ibl_toolkit.layers.atlas import atlas_of
 from expanded_panoramas.ibl_toolkit.layers.bounded_mesh import bounded_mesh
 from expanded_panoramas.ibl_toolkit.layers.layer_mesh import quadtree_mesh, quadtree_of
 from expanded_panoramas.ibl_toolkit.layers.mesh_view import mesh_view
@@ -51,6 +52,7 @@ def main():
         "kinds": cases.KINDS,
         "definitions": DEFINITIONS,
         "usual": settings.usual,
+        "kinds_width": settings.kinds_width,
         "summary": summary(settings, rows),
         "rows": rows,
     }
@@ -63,10 +65,11 @@ def main():
 def plan(settings):
     """Kinds, widths, and the views to be seen of each."""
     far = [cases.aside(distance) for distance in settings.distances]
+    views = {settings.usual: [*settings.table, *far], settings.kinds_width: settings.compared}
     for width in settings.widths:
-        yield cases.TWO, width, [*settings.table, *far] if width == settings.usual else [C1]
+        yield cases.TWO, width, views.get(width, [C1])
     for kind in (cases.ONE, cases.MADE, cases.SURFACES):
-        yield kind, settings.usual, list(settings.table)
+        yield kind, settings.kinds_width, settings.compared
 
 
 def measured(settings, kind, width, seen):
@@ -141,6 +144,7 @@ def summary(settings, rows):
         "best_method": best,
         "best_below_bound_db": round(at_c1[BOUND]["psnr"] - at_c1[best]["psnr"], 2),
         "best_holes": at_c1[best]["holes"],
+        "object_atlas_share": round(objects_share(settings), 4),
         "triangles_of_grid": shares,
         "quadtree_below_grid_db": round(at_c1["grid"]["psnr"] - at_c1["quadtree"]["psnr"], 2),
         "mesh_below_quadtree_db": round(at_c1["quadtree"]["psnr"] - at_c1["mesh"]["psnr"], 2),
@@ -150,6 +154,12 @@ def summary(settings, rows):
             for method in ("quadtree", "mesh")
         },
     }
+
+
+def objects_share(settings):
+    """Area of the objects' atlas, of their map's."""
+    objects = cases.panorama(settings, cases.TWO, settings.usual).layers[1]
+    return atlas_of(objects.mask, objects.mapping).share
 
 
 def forget_memory():

@@ -85,7 +85,8 @@ def test_without_a_panorama_the_scene_itself_is_captured(fresh_blend, tmp_path):
     scene.panorama_layers.folder = str(tmp_path / "layers")
     assert reason(fresh_blend, "make_layers") == "Open a panorama, or add a camera to a scene of your own"
     small.add_camera(scene, (0, 0, 1), (1, 0, 1), field_of_view=1)
-    scene.panorama_layers.width, scene.panorama_layers.radius, scene.cycles.samples = WIDTH, 0.4, 1
+    scene.panorama_layers.width, scene.panorama_layers.radius = WIDTH, 0.4
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
     assert fresh_blend.ops.panorama.make_layers() == {"FINISHED"}
     panorama = read_layers(tmp_path / "layers")
     ahead = WIDTH // 4, WIDTH // 2
