@@ -16,9 +16,9 @@ from ..ibl_toolkit.images import (
 )
 from ..ibl_toolkit.layers.export.pieces import TEXTURE_ERROR_PX
 from ..ibl_toolkit.layers.export.writing import FORMATS, SURFACES, export_layers
-from ..ibl_toolkit.layers.flattened import flattened
-from ..ibl_toolkit.layers.storage import read_layers
-from ..ibl_toolkit.layers.xml_file import NAME
+from ..ibl_toolkit.layers.files.storage import read_layers
+from ..ibl_toolkit.layers.files.xml_file import NAME
+from ..ibl_toolkit.layers.views.flattened import flattened
 from .job import naming, open_job, refuse_output
 from .options import positive, whole_number
 from .progress import Progress

@@ -5,10 +5,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..ibl_toolkit.images.atomic import new_folder
+from ..ibl_toolkit.layers.files.storage import write_layers
+from ..ibl_toolkit.layers.files.xml_file import NAME
 from ..ibl_toolkit.layers.making.check import check_layers
 from ..ibl_toolkit.layers.making.uncovered import share_of_sphere
-from ..ibl_toolkit.layers.storage import write_layers
-from ..ibl_toolkit.layers.xml_file import NAME
 from .layer_makers import SAMPLES, WIDTH, from_points, from_rgbd, from_scene, from_set
 from .options import positive, whole_number
 from .progress import Progress

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from ..ibl_toolkit.images import write_exr
-from ..ibl_toolkit.layers.pinhole import Pinhole
-from ..ibl_toolkit.layers.storage import read_layers
-from ..ibl_toolkit.layers.view_methods import METHODS, outside_by, render_view
-from ..ibl_toolkit.layers.xml_file import NAME
+from ..ibl_toolkit.layers.files.storage import read_layers
+from ..ibl_toolkit.layers.files.xml_file import NAME
+from ..ibl_toolkit.layers.views.pinhole import Pinhole
+from ..ibl_toolkit.layers.views.view_methods import METHODS, outside_by, render_view
 from .job import naming, refuse_output
 from .options import positive, whole_number
 from .progress import Progress

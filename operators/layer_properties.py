@@ -6,7 +6,7 @@ import bpy
 from bpy.props import FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from ..ibl_toolkit.layers.errors import LayersError
-from ..ibl_toolkit.layers.xml_file import NAME, read_xml
+from ..ibl_toolkit.layers.files.xml_file import NAME, read_xml
 
 
 def _folder_changed(layers, context):

@@ -15,9 +15,9 @@ from ..cycles_integration.rgbd_place import NAME as DEPTH
 from ..ibl_toolkit.images import is_rgbd, read_rgbd
 from ..ibl_toolkit.images.atomic import new_folder, refuse_unwritable
 from ..ibl_toolkit.layers.export.writing import export_layers
+from ..ibl_toolkit.layers.files.storage import read_layers, write_layers
+from ..ibl_toolkit.layers.files.xml_file import NAME
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
-from ..ibl_toolkit.layers.storage import read_layers, write_layers
-from ..ibl_toolkit.layers.xml_file import NAME
 from . import progress
 from .layer_properties import folder_of, look_into_folder
 from .long_work import LongWork

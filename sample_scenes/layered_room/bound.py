@@ -12,10 +12,10 @@ import numpy as np
 
 from ...ibl_toolkit import equirectangular
 from ...ibl_toolkit.layers.panorama import Layer, LayeredPanorama
-from ...ibl_toolkit.layers.pinhole import Pinhole
-from ...ibl_toolkit.layers.rendered_view import RenderedView
-from ...ibl_toolkit.layers.texels import sheets_of, texel_index
-from ...ibl_toolkit.layers.visible_tiles import mapping_of
+from ...ibl_toolkit.layers.views.pinhole import Pinhole
+from ...ibl_toolkit.layers.views.rendered_view import RenderedView
+from ...ibl_toolkit.layers.views.texels import sheets_of, texel_index
+from ...ibl_toolkit.layers.views.visible_tiles import mapping_of
 
 SAME_SURFACE = 1.05
 """Of the four pixels round a direction those count whose depth is worse than the best by this at most."""

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from ...ibl_toolkit.layers.pinhole import Pinhole
+from ...ibl_toolkit.layers.views.pinhole import Pinhole
 
 FOV_DEG = 60.0
 """Of a view's width (thesis, 8.6)."""

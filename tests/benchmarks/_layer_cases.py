@@ -10,10 +10,10 @@ import numpy as np
 
 from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces, split_surfaces
 from expanded_panoramas.cycles_integration.layer_scene import frame_of
+from expanded_panoramas.ibl_toolkit.layers.files.mip import halved
+from expanded_panoramas.ibl_toolkit.layers.files.storage import read_layers, write_layers
 from expanded_panoramas.ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
-from expanded_panoramas.ibl_toolkit.layers.mip import halved
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
-from expanded_panoramas.ibl_toolkit.layers.storage import read_layers, write_layers
 from expanded_panoramas.sample_scenes.layered_room import capture, scene, sizes, views
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]

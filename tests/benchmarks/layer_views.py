@@ -19,11 +19,11 @@ import numpy as np
 
 from expanded_panoramas import cycles_integration
 from expanded_panoramas.ibl_toolkit import metrics
-from expanded_panoramas.ibl_toolkit.layers.atlas import atlas_of
-from expanded_panoramas.ibl_toolkit.layers.bounded_mesh import bounded_mesh
-from expanded_panoramas.ibl_toolkit.layers.layer_mesh import quadtree_mesh, quadtree_of
-from expanded_panoramas.ibl_toolkit.layers.mesh_view import mesh_view
-from expanded_panoramas.ibl_toolkit.layers.view_methods import METHODS
+from expanded_panoramas.ibl_toolkit.layers.files.atlas import atlas_of
+from expanded_panoramas.ibl_toolkit.layers.meshes.bounded_mesh import bounded_mesh
+from expanded_panoramas.ibl_toolkit.layers.meshes.layer_mesh import quadtree_mesh, quadtree_of
+from expanded_panoramas.ibl_toolkit.layers.raster.mesh_view import mesh_view
+from expanded_panoramas.ibl_toolkit.layers.views.view_methods import METHODS
 from expanded_panoramas.sample_scenes.layered_room.bound import bound_view
 from expanded_panoramas.sample_scenes.layered_room.views import C1, pinhole
 

@@ -11,7 +11,7 @@ from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.images import RGBD, read_photo_sphere, write_exr, write_rgbd
 from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb
 from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, pieces_of
-from expanded_panoramas.ibl_toolkit.layers.storage import write_layers
+from expanded_panoramas.ibl_toolkit.layers.files.storage import write_layers
 
 SINGLE = 2e-5  # [m] of float32 coordinates through Blender's matrices
 MEAN, LARGEST = (

@@ -7,7 +7,7 @@ import pytest
 
 from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.images import RGBD, write_exr, write_rgbd
-from expanded_panoramas.ibl_toolkit.layers.storage import read_layers
+from expanded_panoramas.ibl_toolkit.layers.files.storage import read_layers
 
 WIDTH = 64
 WALL, CARD = 4.0, 1.5

@@ -7,10 +7,10 @@ import OpenEXR
 import pytest
 from card_room import card_layer, room_layer, true_view
 
+from expanded_panoramas.ibl_toolkit.layers.files.storage import write_layers
 from expanded_panoramas.ibl_toolkit.layers.panorama import LayeredPanorama
-from expanded_panoramas.ibl_toolkit.layers.pinhole import Pinhole
-from expanded_panoramas.ibl_toolkit.layers.storage import write_layers
-from expanded_panoramas.ibl_toolkit.layers.view_methods import METHODS, render_view
+from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
+from expanded_panoramas.ibl_toolkit.layers.views.view_methods import METHODS, render_view
 
 EYE, LOOK_AT, FOV_DEG, SIZE = (3.2, -1.6, 1.25), (4.0, -1.9, 1.15), 65, (96, 64)
 ORIGIN = np.array([3.0, -2.0, 1.15])

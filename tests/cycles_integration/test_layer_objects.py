@@ -9,8 +9,8 @@ from layered_box import ORIGIN, RADIUS, ROTATION, layered_box, radiance_in
 from expanded_panoramas.cycles_integration import layer_objects
 from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES
-from expanded_panoramas.ibl_toolkit.layers.flattened import flattened
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
+from expanded_panoramas.ibl_toolkit.layers.views.flattened import flattened
 
 WIDTH, HEIGHT = 128, 64
 TURN_OF_CAMERA = np.array([[0, 0, -1.0], [-1, 0, 0], [0, 1, 0]])

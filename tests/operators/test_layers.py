@@ -7,8 +7,8 @@ from layered_box import ORIGIN, ROTATION, layered_box, radiance_in
 
 from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.images import RGBD, write_rgbd
+from expanded_panoramas.ibl_toolkit.layers.files.storage import read_layers, write_layers
 from expanded_panoramas.ibl_toolkit.layers.making.check import check_layers
-from expanded_panoramas.ibl_toolkit.layers.storage import read_layers, write_layers
 
 WIDTH = 128
 

@@ -8,7 +8,7 @@ pytest.importorskip("bpy")
 from box_layers import HALF, box_depth, directions
 
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
-from expanded_panoramas.ibl_toolkit.layers.pinhole import Pinhole
+from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
 from expanded_panoramas.sample_scenes.layered_room import capture, scene, views
 from expanded_panoramas.sample_scenes.layered_room.bound import bound_view
 

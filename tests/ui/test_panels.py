@@ -3,7 +3,7 @@
 from layered_box import layered_box
 from room_job import built, calibrated, select
 
-from expanded_panoramas.ibl_toolkit.layers.storage import write_layers
+from expanded_panoramas.ibl_toolkit.layers.files.storage import write_layers
 
 
 class Layout:

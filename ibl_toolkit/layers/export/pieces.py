@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bounded_mesh import bounded_mesh
-from ..layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
+from ..meshes.bounded_mesh import bounded_mesh
+from ..meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
 from ..panorama import Layer, LayeredPanorama
-from ..rendered_view import sampled
+from ..views.rendered_view import sampled
 from .refinement import refined
 from .texture import Texture, texture_of
 from .texture_coordinates import shared_vertices

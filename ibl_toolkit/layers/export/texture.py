@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 
 from ...images.png import srgb_codes
+from ..meshes.summed_area import rectangle_sums, summed_area_table
 from ..panorama import CUBE_MAP, Layer
-from ..summed_area import rectangle_sums, summed_area_table
 from .texture_coordinates import CubeChart, EquirectangularChart
 
 BORDER = 4

@@ -15,7 +15,7 @@ import numpy as np
 from ... import cube_map, equirectangular
 from ...environment_uv import on_pole
 from ..panorama import Layer
-from ..rendered_view import sampled
+from ..views.rendered_view import sampled
 
 _OFF_FACE = 1e-6  # how far beyond a cube's face a corner may lie by rounding, in half faces
 _ROUNDING = 1e-9

@@ -9,8 +9,8 @@ import numpy as np
 
 from ... import cube_map, equirectangular
 from ...light.light_map import LUMINANCE
-from ..corners import Corners
-from ..normals import normals_from_depth
+from ..meshes.corners import Corners
+from ..meshes.normals import normals_from_depth
 from ..panorama import Layer
 from .classification import parted
 from .grid import grid_of

@@ -9,7 +9,7 @@ from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb
 from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, far_radius, pieces_of, shape_radius
 from expanded_panoramas.ibl_toolkit.layers.export.ply import points_of_piece
 from expanded_panoramas.ibl_toolkit.layers.export.texture_coordinates import CubeChart, EquirectangularChart
-from expanded_panoramas.ibl_toolkit.layers.layer_mesh import LayerMesh
+from expanded_panoramas.ibl_toolkit.layers.meshes.layer_mesh import LayerMesh
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
 
 ERROR_PX = 0.5
