@@ -26,7 +26,7 @@ KINDS = {
 }
 TABLE = (*views.TABLE_8_1, views.C1)
 ASIDE = np.array([-1.0, 1.0, 0.0]) / math.sqrt(2)  # from the centre to C1
-DISTANCES = (0.0, 0.5, 1.0, 1.5, 2.0)
+DISTANCES = (0.5, 1.5, 2.0)  # [m]; C1 is at 0.85
 COMPARED = tuple(view for view in TABLE if view.name in ("S6", "S10", "S12", "C1"))
 """Views of all kinds of layers: before a sofa, down at the floor's lamps, to the poufs, and C1."""
 
@@ -46,7 +46,7 @@ class Settings:
     kinds_width: int = 2048
     capture_samples: int = 2  # of the widest: a pixel of the usual width is the mean of four
     size: tuple[int, int] = (960, 540)
-    truth_samples: int = 16  # and denoised, as the capture is
+    truth_samples: int = 8  # and denoised, as the capture is
     table: tuple[views.View, ...] = TABLE
     compared: tuple[views.View, ...] = COMPARED
     distances: tuple[float, ...] = DISTANCES
