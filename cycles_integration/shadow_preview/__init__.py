@@ -1,0 +1,29 @@
+"""A small device's shadow maps shown in Blender: the map of a light as an image, its test as nodes.
+
+    made = shadow_map_of(light, depsgraph, settings)       the numpy reference, of a Blender light
+    image = store_map(made, None, "Shadow Map")            its texels, bit by bit
+    group = build_group(made, image, None, "Shadow Map Preview")
+    put_on(material, group, darkness=1.0)
+
+What the nodes give equals `ibl_toolkit.mobile.shadow_maps.visibility` within 1/255.
+"""
+
+from .casters import KINDS, casters_of
+from .group import WIDEST_WINDOW, aim_group, build_group, fits
+from .light_view import shadow_map_of
+from .map_image import store_map
+from .receivers import nodes_of, put_on, take_off
+
+__all__ = [
+    "KINDS",
+    "WIDEST_WINDOW",
+    "aim_group",
+    "build_group",
+    "casters_of",
+    "fits",
+    "nodes_of",
+    "put_on",
+    "shadow_map_of",
+    "store_map",
+    "take_off",
+]

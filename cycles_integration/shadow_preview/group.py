@@ -1,0 +1,102 @@
+"""The node group "Shadow Map Preview": what shadow maps leave of a light, for any material.
+
+A plain group, not a ShaderNodeCustomGroup: it works where the add-on is not installed, on a render farm.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from ...ibl_toolkit.mobile.shadow_maps import ShadowMap
+from ..node_trees import add, maths, new_group, output_group, vector_maths
+from . import projection, texel
+from .depth_test import DepthTest
+
+WIDEST_WINDOW = 9
+"""Of `pcf` in nodes [texels]: each place costs (window + 1)² look-ups, and a shader that long to compile."""
+KEY = "panorama_shadow_map"
+"""Custom property of a group: the settings that it was built for."""
+_INPUTS = {"Surface": "NodeSocketShader", "Colour": "NodeSocketColor", "Darkness": "NodeSocketFloat"}
+_OUTPUTS = {"Surface": "NodeSocketShader", "Shaded": "NodeSocketColor", "Visibility": "NodeSocketFloat"}
+_LIGHT, _TEXEL = "Light", "Texel"
+"""Names of its nodes for the light's numbers, and of the first that reads the map."""
+
+
+def build_group(
+    made: ShadowMap, image: bpy.types.Image, group: bpy.types.NodeTree | None, name: str
+) -> bpy.types.NodeTree:
+    """Fill a group, the one given or a new one, with the test of a map whose texels are in an image.
+
+    Inputs: Surface, a shader; Colour; Darkness, how dark full shadow is, 0 to 1. Outputs: Visibility, 1 lit
+    and 0 in shadow; Surface and Shaded, the inputs times 1 − Darkness · (1 − Visibility).
+    Raises ValueError for a window of `pcf` beyond WIDEST_WINDOW.
+    """
+    _refuse_wide(made.settings)
+    if group is None:
+        group = new_group(name, "ShaderNodeTree", _OUTPUTS, _INPUTS)
+        _limit(group)
+    old = [node.node_tree for node in group.nodes if node.type == "GROUP"]
+    group.nodes.clear()
+    for tree in set(filter(None, old)):
+        if not tree.users:
+            bpy.data.node_groups.remove(tree)
+    _fill(group, made, image)
+    group[KEY] = _key(made)
+    return group
+
+
+def fits(group: bpy.types.NodeTree | None, made: ShadowMap, image: bpy.types.Image) -> bool:
+    """Whether a group has the nodes that a map in an image needs, so that `aim_group` is all to do."""
+    if group is None or group.get(KEY) != _key(made) or not {_LIGHT, _TEXEL} <= set(group.nodes.keys()):
+        return False
+    return any(getattr(n, "image", None) == image for n in group.nodes[_TEXEL].node_tree.nodes)
+
+
+def aim_group(group: bpy.types.NodeTree, made: ShadowMap):
+    """Give a group that fits where its map's light looks from: no shader is compiled anew."""
+    light = group.nodes[_LIGHT]
+    for name, value in projection.light_numbers(made.camera).items():
+        light.inputs[name].default_value = value
+
+
+def _fill(group, made, image):
+    given = add(group, "NodeGroupInput").outputs
+    geometry = add(group, "ShaderNodeNewGeometry").outputs
+    place = add(
+        group,
+        "ShaderNodeGroup",
+        {"Position": geometry["Position"], "Normal": geometry["Normal"]},
+        node_tree=projection.new_projection(made.camera.perspective),
+        name=_LIGHT,
+    )
+    reader = texel.new_texel(made.settings, image)
+    lit = DepthTest(group, made.settings, place.outputs, reader).visibility()
+    shadow = maths(group, "MULTIPLY", place.outputs["Inside"], maths(group, "SUBTRACT", 1.0, lit))
+    visibility = maths(group, "MULTIPLY", maths(group, "SUBTRACT", 1.0, shadow), place.outputs["Facing"])
+    darkness = maths(group, "MULTIPLY", given["Darkness"], maths(group, "SUBTRACT", 1.0, visibility))
+    left = maths(group, "SUBTRACT", 1.0, darkness)
+    black = add(group, "ShaderNodeEmission", {"Color": (0, 0, 0), "Strength": 0.0}).outputs[0]
+    surface = add(group, "ShaderNodeMixShader", {0: left, 1: black, 2: given["Surface"]}).outputs[0]
+    shaded = vector_maths(group, "MULTIPLY", given["Colour"], left)
+    output_group(group, Surface=surface, Shaded=shaded, Visibility=visibility)
+    aim_group(group, made)
+
+
+def _limit(group):
+    for item in group.interface.items_tree:
+        if item.name == "Darkness":
+            item.default_value, item.min_value, item.max_value, item.subtype = 1.0, 0.0, 1.0, "FACTOR"
+        elif item.name == "Colour" and item.in_out == "INPUT":
+            item.default_value = (1, 1, 1, 1)
+
+
+def _key(made):
+    return repr((made.settings, made.camera.perspective))
+
+
+def _refuse_wide(settings):
+    if settings.method == "pcf" and settings.window > WIDEST_WINDOW:
+        raise ValueError(
+            f"window {settings.window} of PCF must not exceed {WIDEST_WINDOW} texels in nodes: each point "
+            f"would cost {(settings.window + 1) ** 2} look-ups"
+        )

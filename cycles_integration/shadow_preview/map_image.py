@@ -1,0 +1,39 @@
+"""A shadow map's texels in a Blender image, bit by bit."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ...ibl_toolkit.mobile.shadow_maps import ShadowMap
+
+
+def store_map(made: ShadowMap, image: bpy.types.Image | None, name: str) -> bpy.types.Image:
+    """Put a map's texels into an image: the one given or, where kind or size differ, one in its stead.
+
+    32-bit floats become a float image; bytes become RGBA8 as on the device, the high byte first. Colours are
+    no colours there, and alpha is a number as the others.
+    """
+    size, _, channels = made.texels.shape
+    is_float = made.texels.dtype == np.float32
+    if image is None or image.is_float != is_float or tuple(image.size) != (size, size):
+        image = _instead_of(image, name, size, is_float)
+    pixels = np.zeros((size, size, 4), np.float32)
+    pixels[..., 3] = 1
+    pixels[..., :channels] = made.texels if is_float else made.texels / np.float32(255)
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.update_tag()
+    return image
+
+
+def _instead_of(old, name, size, is_float):
+    image = bpy.data.images.new(name, size, size, alpha=True, float_buffer=is_float, is_data=True)
+    image.alpha_mode = "CHANNEL_PACKED"
+    image.use_half_precision = False
+    if old is not None:
+        old.user_remap(image)
+        own_name = old.name
+        bpy.data.images.remove(old)
+        image.name = own_name
+    return image

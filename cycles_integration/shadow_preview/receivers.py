@@ -1,0 +1,57 @@
+"""The group in materials: before the output, so that it darkens whatever their surface shows."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..node_trees import add
+
+NODE = "Shadow Map Preview"
+
+
+def put_on(material: bpy.types.Material, group: bpy.types.NodeTree, darkness: float):
+    """Put the group between a material's surface and its outputs, or renew the one that is there.
+
+    Raises ValueError for a material without a surface to darken.
+    """
+    if material.node_tree is None or (bpy.app.version < (5,) and not material.use_nodes):
+        material.use_nodes = True
+    tree = material.node_tree
+    there = nodes_of(material, group)
+    if not there:
+        there = [_inserted(tree, link, group) for link in _surfaces(material)]
+    for node in there:
+        node.inputs["Darkness"].default_value = darkness
+
+
+def take_off(material: bpy.types.Material, group: bpy.types.NodeTree):
+    """Take the group out again, and link what it darkened as before."""
+    tree = material.node_tree
+    for node in nodes_of(material, group):
+        sources = [link.from_socket for link in node.inputs["Surface"].links]
+        targets = [link.to_socket for link in node.outputs["Surface"].links]
+        tree.nodes.remove(node)
+        for target in targets if sources else ():
+            tree.links.new(sources[0], target)
+
+
+def nodes_of(material: bpy.types.Material, group: bpy.types.NodeTree) -> list[bpy.types.Node]:
+    """The group's nodes in a material, wherever an artist has them."""
+    tree = material.node_tree
+    return [n for n in tree.nodes if n.type == "GROUP" and n.node_tree == group] if tree else []
+
+
+def _surfaces(material):
+    outputs = [n for n in material.node_tree.nodes if n.type == "OUTPUT_MATERIAL"]
+    links = [link for node in outputs for link in node.inputs["Surface"].links]
+    if not links:
+        raise ValueError(f"material '{material.name}' has no surface that a shadow could darken")
+    return links
+
+
+def _inserted(tree, link, group):
+    source, target = link.from_socket, link.to_socket
+    node = add(tree, "ShaderNodeGroup", {"Surface": source}, node_tree=group, name=NODE, label=NODE)
+    node.location = target.node.location.x - 200, target.node.location.y + 150
+    tree.links.new(node.outputs["Surface"], target)
+    return node
