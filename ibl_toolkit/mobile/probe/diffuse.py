@@ -15,10 +15,12 @@ from .errors import ProbeError
 from .lights import ProbeLight
 from .shading import fit_shading
 
-MOST_SAMPLES = 6000
+MOST_SAMPLES = 2500
 """More cells are averaged down: the fit's accuracy is that of the picture's outline by then."""
-RIM = 0.12
-"""Cosine of normal and sight below which a cell is left out: there an outline half a pixel off tells most."""
+RIM = 0.3
+"""Cosine of normal and sight below which a cell is left out: blur and outline errors tell most there."""
+LEAST_FITTED = 3
+"""Lights that are fitted, however few are asked for: what is left out would turn the others."""
 FLAT = 0.05
 """Lights that bring less than this part of the mean luminance are no shading."""
 LEAST_LIT = 0.12
@@ -45,7 +47,7 @@ def diffuse_lights(samples, count) -> tuple[list[ProbeLight], float, tuple[str, 
     mean = float(luminance.mean())
     if not mean > 0:
         raise ProbeError("the ball is black: expose longer")
-    shading = fit_shading(normals, luminance / mean, count, clipped)
+    shading = fit_shading(normals, luminance / mean, max(count, LEAST_FITTED), clipped)
     lengths = np.linalg.norm(shading.vectors, axis=1)
     keep = lengths > FLAT
     if not keep.any():
@@ -54,13 +56,14 @@ def diffuse_lights(samples, count) -> tuple[list[ProbeLight], float, tuple[str, 
             "everywhere alike, or from behind the ball"
         )
     directions = shading.vectors[keep] / lengths[keep][:, None]
-    colours = _colours(normals, radiance, clipped, directions)
+    colours = _colours(normals, radiance, clipped, directions, shading.ambient)
     facing = normals @ directions.T > 0
     lights = [
         ProbeLight(d, c, float("nan"), float(u), int(np.count_nonzero(f)), bool((clipped & f).any()), False)
         for d, c, u, f in zip(directions, colours, shading.uncertainty_deg[keep], facing.T, strict=True)
     ]
     lights.sort(key=lambda light: -light.luminance)
+    lights = lights[:count]
     return lights, shading.rms, tuple(_warnings(lights, shading, len(normals)))
 
 
@@ -94,9 +97,10 @@ def _cosine(samples):
     return -np.sum(samples.mirrored * samples.normals, axis=2)
 
 
-def _colours(normals, radiance, clipped, directions):
+def _colours(normals, radiance, clipped, directions, ambient):
     """Irradiance (k, 3) of lights of known directions, each channel by itself, none below 0."""
-    columns = np.column_stack([np.maximum(normals @ directions.T, 0), np.ones(len(normals))])[~clipped]
+    around = ambient[0] + normals @ ambient[1:] if ambient[0] > 0 else np.ones(len(normals))
+    columns = np.column_stack([np.maximum(normals @ directions.T, 0), around])[~clipped]
     result = np.zeros((len(directions), 3))
     for channel in range(3):
         kept = list(range(columns.shape[1]))
@@ -126,5 +130,5 @@ def _warnings(lights, shading, cells):
     if shading.rms > MISFIT:
         yield (
             f"the shading misses the fit by {shading.rms:.0%} of its mean: more lights, a ball that is not "
-            "matt, a shadow on it, or light from one half of the room"
+            "matt, or a shadow on it"
         )

@@ -7,7 +7,8 @@ import numpy as np
 
 _STEP = 0.25  # px
 _OUTERMOST = 0.25  # of the greatest slope, from which on an outer edge counts
-_SMOOTH = 0.7  # px
+_SMOOTH, _MOST_SMOOTH = 0.7, 1.8  # px, of a picture without noise, and of one with much
+_QUIET = 0.01  # noise that needs no more smoothing
 _NOISE = 1.6  # times the picture's noise, of which the smoothing leaves 0.4
 _LEAST = 1e-3  # of white, per pixel
 _LAPLACE = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
@@ -17,8 +18,11 @@ class EdgePicture:
     """A picture's linear luminance (H, W) float32, about 1 at white, as edges are measured in it."""
 
     def __init__(self, luminance):
-        self.smooth = cv2.GaussianBlur(luminance, (0, 0), _SMOOTH)
-        self.least = max(_NOISE * noise_of(luminance), _LEAST)
+        noise = noise_of(luminance)
+        sigma = float(np.clip(_SMOOTH * np.sqrt(noise / _QUIET), _SMOOTH, _MOST_SMOOTH))
+        self.smooth = cv2.GaussianBlur(luminance, (0, 0), sigma)
+        # Noise of a slope falls with the square of the smoothing.
+        self.least = max(_NOISE * noise * (_SMOOTH / sigma) ** 2, _LEAST)
 
 
 def noise_of(luminance) -> float:

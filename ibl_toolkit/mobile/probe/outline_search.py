@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from .ball import ball_from_rays
+from .edges import noise_of
 from .errors import ProbeError
 from .outline import NEAR, Outline, measure_outline, outline_pixels, radius_px
 
@@ -18,6 +19,8 @@ LEAST_COVERAGE = 0.45
 """Of the outline that must lie on edges."""
 LEAST_DIAMETER = 12
 """Of a ball's picture [px]; smaller ones are not looked for."""
+_SMOOTH, _MOST_SMOOTH = 1.2, 2.5  # px, of a picture without noise, and of one with much
+_QUIET = 4.0  # noise that needs no more smoothing, in codes
 _CHAIN = 12  # pixels of a chain of edges, at least
 _CHAINS = 160
 _TRIPLES = 24
@@ -52,7 +55,10 @@ class _Edges:
     """Pixels on edges, where brightness rises there, and the nearest of them to every pixel."""
 
     def __init__(self, grey):
-        smooth = cv2.GaussianBlur(grey, (0, 0), 1.2)
+        noise = noise_of(grey.astype(np.float32))
+        smooth = cv2.GaussianBlur(
+            grey, (0, 0), float(np.clip(_SMOOTH * np.sqrt(noise / _QUIET), _SMOOTH, _MOST_SMOOTH))
+        )
         dx, dy = cv2.Sobel(smooth, cv2.CV_16S, 1, 0), cv2.Sobel(smooth, cv2.CV_16S, 0, 1)
         strength = np.hypot(dx.astype(np.float32), dy)
         high = float(np.clip(np.percentile(strength, 96), 16, 160))

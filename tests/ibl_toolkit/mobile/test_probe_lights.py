@@ -120,9 +120,25 @@ def test_a_diffuse_ball_with_noise_blur_clipping_and_a_stain(diffuse_image):
     x, y = CAMERA.pixels(BALL.axis).astype(int)
     image[y - 30 : y - 20, x : x + 10] *= 0.2  # a stain
     exposure = 1.0 / np.percentile(image[y - 40 : y + 40, x - 40 : x + 40], 90)  # a tenth is clipped
-    found = estimate_lights(ldr(image, exposure), CAMERA, BALL, "diffuse", count=3)
+    found = estimate_lights(ldr(image, exposure), CAMERA, BALL, "diffuse", count=2)
     assert errors(found.lights, BRIGHT[:2]) == pytest.approx([0, 0], abs=1.5)
     assert any("counts as a lower limit" in text for text in found.warnings)
+
+
+def test_a_sky_above_is_not_the_sun():
+    """A hemisphere of light beside one lamp, whose direction a constant ambient term puts 11° off."""
+    lamp = Lamp(unit([0.9, -0.1, -0.2]), 4, (160, 160, 160))
+    image = photograph(CAMERA, BALL, [lamp], kind="diffuse", fine=1)
+    samples = in_picture(hdr(image), CAMERA, BALL)
+    (x, y), (height, width) = samples.corner, samples.mask.shape
+    sky = 0.11 * (1 - np.nan_to_num(samples.normals[..., 1])) * samples.mask
+    image[y : y + height, x : x + width] += sky[..., None]
+    found = estimate_lights(hdr(image), CAMERA, BALL, "diffuse", count=2)
+    assert len(found.lights) == 1
+    assert errors(found.lights, [lamp])[0] < 0.3
+    np.testing.assert_allclose(
+        found.lights[0].irradiance, lamp.irradiance / np.pi * (0.75, 0.72, 0.7), rtol=0.03
+    )
 
 
 def test_lights_without_use_are_not_added():
@@ -130,10 +146,10 @@ def test_lights_without_use_are_not_added():
     normals = turn / np.linalg.norm(turn, axis=1, keepdims=True) * np.sign(turn[:, 2:])
     luminance = 0.3 + np.maximum(normals @ (0.6, 0.0, 0.5), 0)
     luminance += np.random.default_rng(2).normal(0, 0.02, len(luminance))
-    shading = fit_shading(normals, luminance, 4)
+    shading = fit_shading(normals, luminance, 2)
     assert len(shading.vectors) == 1
     np.testing.assert_allclose(shading.vectors[0], (0.6, 0.0, 0.5), atol=0.01)
-    assert shading.ambient == pytest.approx(0.3, abs=0.01)
+    np.testing.assert_allclose(shading.ambient, (0.3, 0, 0, 0), atol=0.01)
     assert shading.uncertainty_deg[0] < 0.5
 
 
@@ -251,7 +267,7 @@ def test_the_wrong_kind_of_ball_is_doubted(mirror_image):
         CAMERA, BALL, [Lamp(unit([1, -0.6, 0.4]), 3, (300,) * 3)], kind="diffuse", ambient=0.001
     )
     assert any("wide" in text for text in estimate_lights(hdr(side), CAMERA, BALL).warnings)
-    taken_for_matt = estimate_lights(ldr(mirror_image), CAMERA, BALL, "diffuse")
+    taken_for_matt = estimate_lights(ldr(mirror_image), CAMERA, BALL, "diffuse", count=1)
     assert any("not matt" in text for text in taken_for_matt.warnings)
 
 
