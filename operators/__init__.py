@@ -18,6 +18,8 @@ from . import (
     render_job,
     render_presets,
     set_files,
+    shadow_preview,
+    shadow_preview_properties,
     sun_picker,
     sun_position,
     surfaces,
@@ -44,6 +46,7 @@ OPERATORS = (
     pictures,
     render_presets,
     layers,
+    shadow_preview,
     asset_library,
 )
 
@@ -53,6 +56,7 @@ def register():
     properties.register()
     view_properties.register()
     layer_properties.register()
+    shadow_preview_properties.register()
     base.register()
     for module in OPERATORS:
         for cls in module.classes:
@@ -67,6 +71,7 @@ def unregister():
         for cls in reversed(module.classes):
             bpy.utils.unregister_class(cls)
     base.unregister()
+    shadow_preview_properties.unregister()
     layer_properties.unregister()
     view_properties.unregister()
     properties.unregister()

@@ -13,6 +13,7 @@ from . import (
     picture_panels,
     place_panels,
     render_presets,
+    shadow_panel,
     shape_buttons,
     view_header,
 )
@@ -24,6 +25,7 @@ PANELS = (
     place_panels,
     picture_panels,
     layer_panel,
+    shadow_panel,
     image_editor,
     menus,
     file_handlers,

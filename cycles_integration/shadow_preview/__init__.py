@@ -12,7 +12,8 @@ from .casters import KINDS, casters_of
 from .group import WIDEST_WINDOW, aim_group, build_group, fits
 from .light_view import shadow_map_of
 from .map_image import store_map
-from .receivers import nodes_of, put_on, take_off
+from .receivers import has_surface, nodes_of, put_on, take_off
+from .upkeep import discard, give_back_shadows, renew, settings_of, switch_off_shadow
 
 __all__ = [
     "KINDS",
@@ -20,10 +21,16 @@ __all__ = [
     "aim_group",
     "build_group",
     "casters_of",
+    "discard",
     "fits",
+    "give_back_shadows",
+    "has_surface",
     "nodes_of",
     "put_on",
+    "renew",
+    "settings_of",
     "shadow_map_of",
     "store_map",
+    "switch_off_shadow",
     "take_off",
 ]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import bpy
 
-from ...ibl_toolkit.mobile.shadow_maps import ShadowMap
+from ...ibl_toolkit.mobile.shadow_maps import ShadowMap, ShadowSettings
 from ..node_trees import add, maths, new_group, output_group, vector_maths
 from . import projection, texel
 from .depth_test import DepthTest
@@ -31,7 +31,7 @@ def build_group(
     and 0 in shadow; Surface and Shaded, the inputs times 1 − Darkness · (1 − Visibility).
     Raises ValueError for a window of `pcf` beyond WIDEST_WINDOW.
     """
-    _refuse_wide(made.settings)
+    refuse_wide(made.settings)
     if group is None:
         group = new_group(name, "ShaderNodeTree", _OUTPUTS, _INPUTS)
         _limit(group)
@@ -94,7 +94,8 @@ def _key(made):
     return repr((made.settings, made.camera.perspective))
 
 
-def _refuse_wide(settings):
+def refuse_wide(settings: ShadowSettings):
+    """Raise ValueError for a window of `pcf` beyond WIDEST_WINDOW."""
     if settings.method == "pcf" and settings.window > WIDEST_WINDOW:
         raise ValueError(
             f"window {settings.window} of PCF must not exceed {WIDEST_WINDOW} texels in nodes: each point "

@@ -23,6 +23,7 @@ def store_map(made: ShadowMap, image: bpy.types.Image | None, name: str) -> bpy.
     pixels[..., :channels] = made.texels if is_float else made.texels / np.float32(255)
     image.pixels.foreach_set(pixels.ravel())
     image.update()
+    image.pack()  # else the file would not keep it
     image.update_tag()
     return image
 

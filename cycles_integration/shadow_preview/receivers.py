@@ -10,16 +10,15 @@ NODE = "Shadow Map Preview"
 
 
 def put_on(material: bpy.types.Material, group: bpy.types.NodeTree, darkness: float):
-    """Put the group between a material's surface and its outputs, or renew the one that is there.
+    """Put the group between a material's surface and its outputs, unless an artist has it somewhere already.
 
-    Raises ValueError for a material without a surface to darken.
+    A material without nodes gets some; one without a surface stays as it is, see `has_surface`.
     """
-    if material.node_tree is None or (bpy.app.version < (5,) and not material.use_nodes):
+    if not _has_nodes(material):
         material.use_nodes = True
-    tree = material.node_tree
     there = nodes_of(material, group)
     if not there:
-        there = [_inserted(tree, link, group) for link in _surfaces(material)]
+        there = [_inserted(material.node_tree, link, group) for link in _surfaces(material)]
     for node in there:
         node.inputs["Darkness"].default_value = darkness
 
@@ -41,12 +40,18 @@ def nodes_of(material: bpy.types.Material, group: bpy.types.NodeTree) -> list[bp
     return [n for n in tree.nodes if n.type == "GROUP" and n.node_tree == group] if tree else []
 
 
+def has_surface(material: bpy.types.Material) -> bool:
+    """Whether there is something that a shadow could darken."""
+    return not _has_nodes(material) or bool(_surfaces(material))
+
+
+def _has_nodes(material):
+    return material.node_tree is not None and (bpy.app.version >= (5,) or material.use_nodes)
+
+
 def _surfaces(material):
     outputs = [n for n in material.node_tree.nodes if n.type == "OUTPUT_MATERIAL"]
-    links = [link for node in outputs for link in node.inputs["Surface"].links]
-    if not links:
-        raise ValueError(f"material '{material.name}' has no surface that a shadow could darken")
-    return links
+    return [link for node in outputs for link in node.inputs["Surface"].links]
 
 
 def _inserted(tree, link, group):

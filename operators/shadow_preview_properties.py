@@ -1,0 +1,179 @@
+"""What a scene's shadow preview is made with; saved in the .blend."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from ..ibl_toolkit.mobile.shadow_maps.settings import LARGEST, SMALLEST, STRONGEST
+from . import shadow_watch
+from .shadow_watch import settings_changed
+
+METHODS = (
+    ("hard", "Hard", "One comparison: aliased edges, the classic set-up of cards without shaders. Cheapest"),
+    (
+        "pcf",
+        "PCF",
+        "Percentage-closer filtering: the mean of (window + 1)² comparisons. Soft, costly if wide",
+    ),
+    ("vsm", "VSM", "Variance shadow map: blurred once, soft at the cost of one look-up; light may bleed in"),
+    (
+        "evsm",
+        "EVSM",
+        "Exponential variance shadow map: as VSM, with little light bleeding in the same memory",
+    ),
+)
+STORAGES = (
+    ("float32", "32 Bit Floats", "4 bytes a number: desktops, newer phones"),
+    ("8+8", "8 + 8 Bits", "1 byte a number: depths in 256 steps"),
+    (
+        "16+16",
+        "16 + 16 Bits, Packed",
+        "2 bytes a number, packed into RGBA8 and unpacked before it is filtered",
+    ),
+)
+
+
+def _is_light(preview, thing):
+    return thing.type == "LIGHT"
+
+
+def _window_changed(preview, context):
+    if preview.window % 2 == 0:
+        preview.window += 1  # comes back here
+    else:
+        settings_changed(preview, context)
+
+
+class PanoramaShadowPreview(bpy.types.PropertyGroup):
+    """How a small device would draw the shadow of one light, shown by a node group in materials."""
+
+    light: PointerProperty(
+        type=bpy.types.Object,
+        name="Light",
+        description="Light whose shadow is shown. A sun shines in parallel, every other one from its middle; "
+        "sizes are left out, as devices do",
+        poll=_is_light,
+        update=shadow_watch.light_changed,
+    )
+    method: EnumProperty(
+        name="Method",
+        description="How the map is tested: aliasing, softness, light bleeding and cost come from it",
+        items=METHODS,
+        default="evsm",
+        update=settings_changed,
+    )
+    resolution: IntProperty(
+        name="Resolution",
+        description="Width and height of the map: twice as many show finer edges and take four times the "
+        "memory [texels]",
+        default=1024,
+        min=SMALLEST,
+        soft_min=64,
+        soft_max=2048,
+        max=LARGEST,
+        update=settings_changed,
+    )
+    storage: EnumProperty(
+        name="Storage",
+        description="How a texel holds its numbers: fewer bits take less memory and show steps of depth",
+        items=STORAGES,
+        default="16+16",
+        update=settings_changed,
+    )
+    window: IntProperty(
+        name="Window",
+        description="Width of the filter, odd: the wider, the softer the edges. 9 at most for PCF [texels]",
+        default=3,
+        min=1,
+        soft_max=15,
+        max=63,
+        step=2,
+        update=_window_changed,
+    )
+    offset_by_itself: BoolProperty(
+        name="Offset by Itself",
+        description="Take the least offset that keeps the method and window free of acne",
+        default=True,
+        update=settings_changed,
+    )
+    offset_factor: FloatProperty(
+        name="Slope Offset",
+        description="Moves surfaces away from the light by this times their slope in the map, as "
+        "glPolygonOffset does; the classic set-up has 1.9. Too little: acne; too much: shadows come off "
+        "their objects [depth per texel]",
+        default=1.9,
+        soft_min=0,
+        soft_max=10,
+        min=-100,
+        max=100,
+        update=settings_changed,
+    )
+    offset_units: FloatProperty(
+        name="Constant Offset",
+        description="Moves all surfaces away from the light by so many steps of the storage; the classic "
+        "set-up has 4. Too little: acne; too much: shadows come off their objects [steps of depth]",
+        default=4.0,
+        soft_min=0,
+        soft_max=100,
+        min=-1e7,
+        max=1e7,
+        update=settings_changed,
+    )
+    bleeding_reduction: FloatProperty(
+        name="Bleeding Reduction",
+        description="Light below this share counts as none: takes away light that bleeds into shadows and "
+        "narrows their edges. VSM and EVSM [0 to 0.95]",
+        default=0.15,
+        min=0,
+        max=0.95,
+        update=settings_changed,
+    )
+    exponent: FloatProperty(
+        name="Exponent",
+        description="How strongly EVSM sets depths apart: more lets less light bleed, but shows the steps "
+        "of few bits; 20 suits 8 bits [no unit]",
+        default=40.0,
+        min=0.1,
+        max=STRONGEST,
+        update=settings_changed,
+    )
+    darkness: FloatProperty(
+        name="Darkness",
+        description="Share of the surface's light that full shadow takes away: 1 is black [0 to 1]",
+        subtype="FACTOR",
+        default=1.0,
+        min=0,
+        max=1,
+        update=shadow_watch.looks_changed,
+    )
+    replaces_own: BoolProperty(
+        name="Instead of Its Own",
+        description="Switch the light's own shadow off while the preview is there, so none is seen twice",
+        default=True,
+        update=shadow_watch.looks_changed,
+    )
+    keep_current: BoolProperty(
+        name="Keep Current",
+        description="Make the map anew when light, objects or settings change, and at each frame. Takes a "
+        "tenth of a second to some seconds each time, by resolution",
+        default=True,
+        update=settings_changed,
+    )
+    image: PointerProperty(type=bpy.types.Image, description="The map's texels")
+    group: PointerProperty(type=bpy.types.NodeTree, description="The node group that tests the map")
+    problem: StringProperty(description="What the map cannot show, or why it could not be made")
+
+
+def register():
+    """Give every scene its preview."""
+    bpy.utils.register_class(PanoramaShadowPreview)
+    bpy.types.Scene.panorama_shadow_preview = PointerProperty(
+        type=PanoramaShadowPreview, description="Shadows of the scene as a small device has them"
+    )
+    shadow_watch.register()
+
+
+def unregister():
+    """Take them back."""
+    shadow_watch.unregister()
+    del bpy.types.Scene.panorama_shadow_preview
+    bpy.utils.unregister_class(PanoramaShadowPreview)

@@ -1,0 +1,156 @@
+"""What keeps a scene's shadow preview current when its light, the objects or the settings change.
+
+A change only marks the scene; a timer then makes the map, once for all changes since the last, with a pause
+as long as that took, so that the views stay free. A frame change makes it at once, for renders.
+"""
+
+from __future__ import annotations
+
+import time
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..cycles_integration.shadow_preview import KINDS, nodes_of, renew, switch_off_shadow
+from ..cycles_integration.shadow_preview.upkeep import give_back_shadows
+
+SHORTEST_PAUSE = 0.1
+"""Between two maps [s]."""
+_marked: set[str] = set()
+"""Names of scenes whose map is out of date."""
+
+
+def mark(scene: bpy.types.Scene):
+    """Have the map made anew soon, if the scene has a preview that is kept current."""
+    if is_kept(scene):
+        _marked.add(scene.name)
+        if not bpy.app.timers.is_registered(_at_rest):
+            bpy.app.timers.register(_at_rest, first_interval=SHORTEST_PAUSE)
+
+
+def is_kept(scene: bpy.types.Scene) -> bool:
+    """Whether the scene has a preview, and the switch is on."""
+    preview = scene.panorama_shadow_preview
+    return preview.group is not None and preview.keep_current and scene.library is None
+
+
+def is_waiting() -> bool:
+    """Whether a map is out of date."""
+    return bool(_marked)
+
+
+def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
+    """Make the map anew and keep what it cannot show; where that fails, the last one stays and it is said."""
+    preview = scene.panorama_shadow_preview
+    _marked.discard(scene.name)
+    if preview.light is None:
+        preview.problem = "the preview's light is gone: choose another"
+        return
+    try:
+        preview.problem = "; ".join(renew(preview, depsgraph).warnings)
+    except ValueError as error:
+        preview.problem = str(error)
+
+
+def work_off():
+    """Make the maps that are out of date of the scenes that are shown."""
+    shown = {window.scene.name: window.view_layer for window in bpy.context.window_manager.windows}
+    shown.setdefault(bpy.context.scene.name, bpy.context.view_layer)
+    for name in [name for name in _marked if name in shown]:
+        shown[name].update()
+        refresh(bpy.data.scenes[name], shown[name].depsgraph or bpy.context.evaluated_depsgraph_get())
+    _marked.intersection_update(name for name in _marked if name in bpy.data.scenes)
+
+
+def settings_changed(preview, context):
+    """A setting was changed: of the map, or of what shows it."""
+    mark(preview.id_data)
+
+
+def looks_changed(preview, context):
+    """How dark shadows are, and whose they are: no new map."""
+    if preview.group is None:
+        return
+    for material in bpy.data.materials:
+        for node in nodes_of(material, preview.group):
+            node.inputs["Darkness"].default_value = preview.darkness
+    if preview.replaces_own and preview.light is not None:
+        switch_off_shadow(preview.light)
+    else:
+        give_back_shadows()
+
+
+def light_changed(preview, context):
+    """Another light was chosen."""
+    looks_changed(preview, context)
+    mark(preview.id_data)
+
+
+def _at_rest():
+    start = time.monotonic()
+    work_off()
+    return max(SHORTEST_PAUSE, time.monotonic() - start) if _marked else None
+
+
+def _concerns(update) -> bool:
+    """Whether a change may be one of the map: where things stand, what they are, which are there."""
+    thing = update.id
+    if isinstance(thing, bpy.types.Object):
+        return (thing.type == "LIGHT" or thing.type in KINDS or thing.type == "EMPTY") and (
+            update.is_updated_transform or update.is_updated_geometry
+        )
+    return isinstance(thing, bpy.types.Collection | bpy.types.Light)
+
+
+@persistent
+def _on_change(scene, depsgraph):
+    if is_kept(scene) and any(_concerns(update) for update in depsgraph.updates):
+        mark(scene)
+
+
+@persistent
+def _on_frame(scene, depsgraph):
+    if not is_kept(scene) or not any(_concerns(update) for update in depsgraph.updates):
+        return
+    if any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows):
+        mark(scene)
+    else:
+        refresh(scene, depsgraph)
+
+
+@persistent
+def _on_other_file(*_):
+    _marked.clear()
+    for scene in bpy.data.scenes:
+        mark(scene)
+
+
+@persistent
+def _before_render(*_):
+    if _marked:
+        work_off()
+
+
+HANDLERS = (
+    ("depsgraph_update_post", _on_change),
+    ("frame_change_post", _on_frame),
+    ("load_post", _on_other_file),
+    ("undo_post", _on_other_file),
+    ("redo_post", _on_other_file),
+    ("render_init", _before_render),
+)
+
+
+def register():
+    """Begin to watch."""
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister():
+    """Leave no handler and no timer."""
+    for name, handler in HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    if bpy.app.timers.is_registered(_at_rest):
+        bpy.app.timers.unregister(_at_rest)
+    _marked.clear()

@@ -1,0 +1,57 @@
+"""The sidebar's step to the shadows of small devices."""
+
+import bpy
+
+from ..operators.shadow_preview import light_for, preview_missing
+from .steps import Step
+
+FILTERED = ("pcf", "vsm", "evsm")
+
+
+class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
+    """Step 8."""
+
+    bl_label = "8  Device Shadows"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def is_done(self, scene):
+        """There is a preview."""
+        return scene.panorama_shadow_preview.group is not None
+
+    def draw(self, context):
+        """Light, method, offset, looks; and what makes and removes the preview."""
+        layout, preview = self.layout, context.scene.panorama_shadow_preview
+        is_there = preview.group is not None
+        for names in (("light",), _map_names(preview), _offset_names(preview), ("darkness", "replaces_own")):
+            column = layout.column(align=True)
+            column.use_property_split, column.use_property_decorate = True, False
+            for name in names:
+                column.prop(preview, name)
+        if not is_there and preview.light is None and light_for(context) is not None:
+            self.say(context, f"Without a choice it is '{light_for(context).name}'")
+        self.say(context, preview_missing(context))
+        layout.operator("panorama.preview_shadows", icon="SHADING_RENDERED")
+        if not is_there:
+            return
+        self.say(context, preview.problem, "ERROR")
+        row = layout.row(align=True)
+        row.prop(preview, "keep_current", toggle=True, icon="FILE_REFRESH")
+        if not preview.keep_current:
+            row.operator("panorama.renew_shadow_preview", text="Renew")
+        layout.operator("panorama.remove_shadow_preview", icon="TRASH")
+
+
+def _map_names(preview):
+    names = ["method", "resolution", "storage"]
+    if preview.method in FILTERED:
+        names.append("window")
+    if preview.method in ("vsm", "evsm"):
+        names.append("bleeding_reduction")
+    return [*names, "exponent"] if preview.method == "evsm" else names
+
+
+def _offset_names(preview):
+    return ["offset_by_itself", *([] if preview.offset_by_itself else ["offset_factor", "offset_units"])]
+
+
+classes = (PANORAMA_PT_device_shadows,)
