@@ -6,7 +6,7 @@ I3D 2015, algorithm 3 and, for 8 bits a moment, the affine transform they optimi
 
 import numpy as np
 
-from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import evsm, vsm
+from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import evsm, suggested_settings, vsm
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps.gaussian import along
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps.lookup import bilinear
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps.storage import packed, unpacked
@@ -27,16 +27,18 @@ BIASES = (1e-6, 6e-5, 1e-3, 5e-3, 1.5e-2, 5e-2)
 
 
 def candidates():
-    """Name -> (bits a texel, function of (depth, places (n, 3), window) -> visibilities to choose from)."""
+    """Name -> (storage of the depths, bits a texel, function of (depth, places (n, 3), window)).
+
+    The function gives one visibility (n,) for each bias to choose from.
+    """
     return {
-        "VSM 16 + 16": (32, lambda d, p, w: [_vsm(d, p, w, "16+16")]),
-        "ESM float": (32, lambda d, p, w: [_esm(d, p, w)]),
-        "EVSM half floats": (32, _evsm_half),
-        "MSM 4 × 8": (32, lambda d, p, w: [_msm(d, p, w, _eight, a) for a in BIASES]),
-        "MSM 4 × float": (
-            128,
-            lambda d, p, w: [_msm(d, p, w, lambda m: m.astype(np.float32), a) for a in BIASES],
-        ),
+        "VSM 16 + 16": ("16+16", 32, lambda d, p, w: [_vsm(d, p, w, "16+16")]),
+        "ESM float": ("float32", 32, lambda d, p, w: [_esm(d, p, w)]),
+        "EVSM half floats": ("16+16", 32, _evsm_half),
+        "MSM 4 × 8": ("16+16", 32, lambda d, p, w: [_msm(d, p, w, _eight, a) for a in BIASES]),
+        "MSM 4 × float": ("float32", 128, lambda d, p, w: [_msm(d, p, w, np.float32, a) for a in BIASES]),
+        "EVSM 16 + 16, ours": ("16+16", 32, lambda d, p, w: [_ours(d, p, w, "16+16")]),
+        "EVSM 8 + 8, ours": ("8+8", 16, lambda d, p, w: [_ours(d, p, w, "8+8")]),
     }
 
 
@@ -99,8 +101,9 @@ def _msm(depth, places, window, rounded, bias):
     return 1 - np.clip(np.nan_to_num(shadow), 0, 1)
 
 
-def suggested(depth, places, window, settings):
-    """What the package does, without its reduction of bleeding, from the same depths."""
+def _ours(depth, places, window, storage):
+    """What the package does, without its reduction of bleeding."""
+    settings = suggested_settings(1.0, storage=storage)
     decode, encode = (lambda t: evsm.decoded(t, settings)), (lambda m: evsm.encoded(m, settings))
     held = _filtered(_powers(evsm.warped(depth, settings.exponent), 2), window, lambda m: decode(encode(m)))
     x = evsm.warped(places[:, 2], settings.exponent)

@@ -1,6 +1,7 @@
 """What can be chosen of a shadow map."""
 
 from dataclasses import dataclass
+from numbers import Integral
 
 from .storage import STEPS
 
@@ -38,9 +39,10 @@ class ShadowSettings:
     def __post_init__(self):
         _one_of("method", self.method, METHODS)
         _one_of("storage", self.storage, STORAGES)
+        for name in ("resolution", "window"):
+            if not isinstance(getattr(self, name), Integral):
+                raise ValueError(f"{name} {getattr(self, name)} must be a whole number of texels")
         _within("resolution", self.resolution, SMALLEST, LARGEST)
-        if self.resolution != int(self.resolution):
-            raise ValueError(f"resolution {self.resolution} must be a whole number of texels")
         if self.window < 1 or self.window % 2 != 1:
             raise ValueError(f"window {self.window} must be an odd number of texels: 1, 3, 5 …")
         if self.window > self.resolution:

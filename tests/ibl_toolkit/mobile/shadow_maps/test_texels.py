@@ -127,6 +127,7 @@ def test_warped_moments_come_back(storage, exponent):
         ("resolution", 8),
         ("resolution", 512.5),
         ("window", 4),
+        ("window", 3.0),
         ("window", 0),
         ("window", 4097),
         ("offset_factor", np.nan),
