@@ -142,10 +142,6 @@ class LightCamera:
         distance = np.linalg.norm(away, axis=1)
         return away / np.where(distance > 0, distance, 1.0)[:, None], distance
 
-    def texel_size(self, resolution: int) -> float:
-        """Larger side of a texel [m], for a lamp at far."""
-        return 2 * max(self.half_width, self.half_height) * (self.far if self.perspective else 1) / resolution
-
 
 def _scene(points):
     points = np.asarray(points, dtype=np.float64)
