@@ -1,29 +1,21 @@
 """glTF 2.0 in one file (.glb): unlit, textured meshes below a node that is the panorama's origin.
 
-glTF is y up: our (x, y, z) becomes (x, z, -y), so that a program that is z up, as Blender is, has our axes
-again.
-
 Source: Khronos, "glTF 2.0 Specification", ISO/IEC 12113:2022, and the extension KHR_materials_unlit.
 """
 
 from __future__ import annotations
 
-import json
-import struct
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+from ...glb import FLOAT, VERTICES, Y_UP, GlbBinary, glb_bytes
 from ...images import replacing
 from ..panorama import LayeredPanorama
 from .pieces import Piece
 
 UNLIT = "KHR_materials_unlit"
-Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
-"""Leads from z up to y up."""
-_FLOAT, _UINT = 5126, 5125
-_VERTICES, _INDICES = 34962, 34963  # targets of buffer views
 _LINEAR, _MIPMAPS, _REPEAT, _CLAMP = 9729, 9987, 10497, 33071
 _CUTOFF = 0.5
 
@@ -34,7 +26,7 @@ def write_glb(path, panorama: LayeredPanorama, pieces: list[Piece], exposure: fl
     Colours are 8-bit sRGB of the radiance times `exposure`; each material says so in its extras, so that
     radiance can be had back up to where it was clipped: colour (linear) / exposure.
     """
-    binary = _Binary()
+    binary = GlbBinary()
     meshes = [_mesh(piece, number, binary) for number, piece in enumerate(pieces)]
     materials, textures, images = _materials(pieces, exposure, binary)
     first = 1  # node 0 is the panorama's
@@ -52,46 +44,15 @@ def write_glb(path, panorama: LayeredPanorama, pieces: list[Piece], exposure: fl
             {"magFilter": _LINEAR, "minFilter": _MIPMAPS, "wrapS": _REPEAT, "wrapT": _CLAMP},
         ],
         "images": images,
-        "accessors": binary.accessors,
-        "bufferViews": binary.views,
-        "buffers": [{"byteLength": len(binary.data)}],
     }
-    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False).encode()
     with replacing(Path(path)) as temporary:
-        temporary.write_bytes(_container(text, bytes(binary.data)))
-
-
-class _Binary:
-    """The binary part of the file, and what says where each array is in it."""
-
-    def __init__(self):
-        self.data, self.views, self.accessors = bytearray(), [], []
-
-    def add_bytes(self, content, target=None):
-        """A view of bytes, its number; each begins at a multiple of 4."""
-        self.data.extend(bytes(-len(self.data) % 4))
-        view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(content)}
-        self.views.append(view if target is None else {**view, "target": target})
-        self.data.extend(content)
-        return len(self.views) - 1
-
-    def add_array(self, values, kind, component, target, with_bounds=False):
-        """An accessor of an array, its number."""
-        accessor = {"componentType": component, "count": len(values), "type": kind}
-        if with_bounds:
-            accessor |= {"min": values.min(axis=0).tolist(), "max": values.max(axis=0).tolist()}
-        accessor["bufferView"] = self.add_bytes(np.ascontiguousarray(values).tobytes(), target)
-        self.accessors.append(accessor)
-        return len(self.accessors) - 1
+        temporary.write_bytes(glb_bytes(document, binary))
 
 
 def _mesh(piece, material, binary):
-    points = (piece.points @ Y_UP.T).astype("<f4") + np.float32(
-        0
-    )  # no -0.0, which a JSON reader may not keep
-    position = binary.add_array(points, "VEC3", _FLOAT, _VERTICES, with_bounds=True)
-    uv = binary.add_array(piece.uv.astype("<f4"), "VEC2", _FLOAT, _VERTICES)
-    triangles = binary.add_array(piece.triangles.astype("<u4").reshape(-1), "SCALAR", _UINT, _INDICES)
+    position = binary.add_vectors(piece.points, with_bounds=True)
+    uv = binary.add_array(piece.uv.astype("<f4"), "VEC2", FLOAT, VERTICES)
+    triangles = binary.add_triangles(piece.triangles)
     primitive = {
         "attributes": {"POSITION": position, "TEXCOORD_0": uv},
         "indices": triangles,
@@ -146,19 +107,3 @@ def _quaternion(rotation):
     vector = axis / angle * np.sin(angle / 2) if angle else axis
     quaternion = np.array([*vector, np.cos(angle / 2)])
     return quaternion / np.linalg.norm(quaternion)
-
-
-def _container(text, binary):
-    """The chunks of a .glb file, each filled up to a multiple of 4 bytes."""
-    text += b" " * (-len(text) % 4)
-    binary += bytes(-len(binary) % 4)
-    length = 12 + 8 + len(text) + 8 + len(binary)
-    return b"".join(
-        [
-            struct.pack("<4sII", b"glTF", 2, length),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(binary), b"BIN\0"),
-            binary,
-        ]
-    )
