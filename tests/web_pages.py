@@ -1,0 +1,187 @@
+"""Pages with shadows for tests: a scene, Chromium's picture of it, and what numpy says it must be."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import cv2
+import numpy as np
+import shadow_scenes
+
+from expanded_panoramas.ibl_toolkit.equirectangular import sample
+from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb, srgb_from_linear
+from expanded_panoramas.ibl_toolkit.layers.raster.rasterizer import rasterize
+from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
+from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import LightCamera, remaining_light, shadow_map
+from expanded_panoramas.ibl_toolkit.mobile.shadow_scene import SceneLight, SceneMesh, ShadowScene
+from expanded_panoramas.ibl_toolkit.mobile.web_page import Background, write_page
+
+CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    *("--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
+    *("--hide-scrollbars", "--force-device-scale-factor=1", "--force-color-profile=srgb"),
+    *("--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"),
+    *("--no-first-run", "--virtual-time-budget=20000"),
+]
+SIZE = 480, 320
+_TURN = 0.6
+"""Between neighbouring normals: more is an edge."""
+SUN, LAMP = (0.5, -0.6, 0.9), (-1.4, -1.1, 2.6)
+
+
+def photographed(page, folder, size=SIZE, chromium=CHROMIUM):
+    """What Chromium shows of a page: (H, W, 3) from 0 to 255."""
+    picture, profile = Path(folder) / "page.png", Path(folder) / "profile"
+    subprocess.run(
+        [chromium, *FLAGS, f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
+         f"--screenshot={picture}", Path(page).resolve().as_uri()],
+        check=True, capture_output=True, timeout=120,
+    )  # fmt: skip
+    return cv2.cvtColor(cv2.imread(str(picture)), cv2.COLOR_BGR2RGB)
+
+
+def still_life(lights=("sun",), roles=("support", "synthetic", "synthetic"), ambient=0.3):
+    """A box and a ball on a floor."""
+    solids = (
+        shadow_scenes.Box((-0.6, -0.3, 0), (-0.1, 0.2, 0.9)),
+        shadow_scenes.Ball((0.7, 0.2, 0.6), 0.3, 48),
+    )
+    floor = shadow_scenes.Scene((), 2.0).mesh()
+    box, ball = (solid.mesh() for solid in solids)
+    points = np.concatenate([mesh[0] for mesh in (floor, box, ball)])
+    cameras = {
+        "sun": SceneLight(LightCamera.of_sun(SUN, points), (2.0, 1.8, 1.5)),
+        "lamp": SceneLight(LightCamera.of_lamp(LAMP, points), (6.0, 7.0, 9.0)),
+    }
+    normals = (ball[0] - solids[1].centre) / 0.3
+    meshes = (
+        SceneMesh("floor", *floor, roles[0]),
+        SceneMesh("box", *_outward(*box), roles[1], (0.7, 0.3, 0.2)),
+        SceneMesh("ball", *ball, roles[2], (0.2, 0.4, 0.7), normals),
+    )
+    return ShadowScene(meshes, [cameras[name] for name in lights], (ambient,) * 3)
+
+
+def _outward(points, triangles):
+    """Triangles of a convex solid turned so that they are counter-clockwise from outside."""
+    corners = points[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = ((corners.mean(axis=1) - points.mean(axis=0)) * across).sum(axis=1) < 0
+    return points, np.where(inward[:, None], triangles[:, ::-1], triangles)
+
+
+def measured(scene, settings, background, folder, view=None):
+    """By how much Chromium's picture differs, 0 to 255, the worst channel; the outlines; the picture.
+
+    The page is written to `folder`.
+    """
+    view = view or camera()
+    page = Path(folder) / "page.html"
+    write_page(page, scene, [settings], background, view)
+    shown = photographed(page, folder, (view.width, view.height))
+    right, outlines = expected(scene, settings, background, view, background.jpeg(page))
+    return np.abs(shown - right).max(axis=2), outlines, shown
+
+
+def camera():
+    return Pinhole.looking_at((0.3, -3.0, 1.9), (0.1, 0.0, 0.3), 55, *SIZE)
+
+
+def white():
+    """A panorama that shows what is multiplied with it."""
+    return Background(np.ones((8, 16, 3), np.float32))
+
+
+def sky():
+    """A smooth panorama with a seam that shows, turned, and captured above the floor."""
+    u, v = np.meshgrid((np.arange(64) + 0.5) / 64, (np.arange(32) + 0.5) / 32)
+    colours = [0.2 + 0.6 * u, 0.3 + 0.4 * np.sin(3 * v) ** 2, 0.8 - 0.5 * v]
+    turn = cv2.Rodrigues(np.array([0.05, 0.1, 2.0]))[0]
+    image = np.stack(colours, axis=-1).astype(np.float32)
+    return Background(image, "panorama", 0.8, np.array([0.3, -3.0, 1.6]), turn)
+
+
+def photo(view):
+    """A photo as a camera has it."""
+    x, y = np.meshgrid(np.linspace(0, 1, view.width), np.linspace(0, 1, view.height))
+    return Background(
+        np.stack([0.3 + 0.5 * x, 0.8 - 0.4 * y, 0.5 + 0.3 * x * y], -1).astype(np.float32), "photo"
+    )
+
+
+def expected(scene, settings, background, view, jpeg=b""):
+    """The picture (H, W, 3) from 0 to 255, and (H, W) bool, whether an outline of a mesh is within a pixel.
+
+    jpeg: the background as the page has it, else it is taken as it is.
+    """
+    parts = [mesh.with_normals() for mesh in scene.meshes]
+    points, triangles = _joined([(p.astype(np.float32).astype(float), t) for p, _, t in parts])
+    normals = np.concatenate([n for _, n, _ in parts])
+    rays = view.directions().reshape(-1, 3)
+    seen = rasterize(points, triangles, view).triangle.ravel()
+    hit, mesh = seen >= 0, np.repeat(np.arange(len(parts)), [len(t) for _, _, t in parts])
+    which = mesh[seen[hit]]
+    at, upright = _where(points[triangles[seen[hit]]], normals[triangles[seen[hit]]], view.eye, rays[hit])
+    colours = _background(background, jpeg)
+    linear = colours(rays, np.arange(len(rays)))
+    whole, kept = _light(scene, settings, points, triangles, at, upright)
+    share = np.where(whole > 0, kept / np.maximum(whole, 1e-30), 1)
+    shown = colours(at - background.origin, np.flatnonzero(hit)) * share
+    albedo = np.array([m.albedo for m in scene.meshes])[which]
+    new = np.array([m.role == "synthetic" for m in scene.meshes])[which]
+    linear[hit] = np.where(new[:, None], albedo / np.pi * kept * background.exposure, shown)
+    labels = np.zeros((len(rays), 4))
+    labels[hit] = np.column_stack([10 * (which + 1), upright])
+    shape = view.height, view.width
+    return 255 * srgb_from_linear(linear).reshape(*shape, 3), _outlines(labels.reshape(*shape, 4))
+
+
+def _outlines(labels):
+    """(H, W) bool: where meshes or normals (H, W, 4) differ within a pixel."""
+    square = np.ones((3, 3), np.uint8)
+    spread = cv2.dilate(labels, square) - cv2.erode(labels, square)
+    return (spread > _TURN).any(axis=2)
+
+
+def _joined(meshes):
+    first = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    return (
+        np.concatenate([points for points, _ in meshes]),
+        np.concatenate([triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]),
+    )
+
+
+def _where(corners, normals, eye, rays):
+    """Places (n, 3) where rays meet triangles, and the normals between those of the corners."""
+    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    matrix = np.stack([one, two, -rays], axis=-1)
+    share = np.linalg.solve(matrix, (eye - corners[:, 0])[..., None])[..., 0]
+    weights = np.stack([1 - share[:, 0] - share[:, 1], share[:, 0], share[:, 1]], axis=1)
+    upright = (normals * weights[..., None]).sum(axis=1)
+    return eye + share[:, 2:] * rays, upright / np.linalg.norm(upright, axis=1, keepdims=True)
+
+
+def _background(background, jpeg):
+    """A function of directions (n, 3) and pixels (n,): linear colours (n, 3)."""
+    if jpeg:
+        codes = cv2.cvtColor(cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        image = linear_from_srgb(codes / 255)
+    else:
+        image = background.image * background.exposure
+    if background.kind == "photo":
+        return lambda directions, pixels: image.reshape(-1, 3)[pixels]
+    return lambda directions, pixels: sample(image, directions @ background.world_from_panorama).astype(float)
+
+
+def _light(scene, settings, points, triangles, at, normals):
+    """Irradiance (n, 3) without shadows, and with them."""
+    maps = [shadow_map(points, triangles, light.camera, settings) for light in scene.lights]
+    strengths = np.array([light.strength for light in scene.lights])
+    whole = np.zeros((len(at), 3))
+    for light in scene.lights:
+        to_light, distance = light.camera.to_light(at)
+        cosine = np.maximum((to_light * normals).sum(axis=1), 0)
+        whole += (cosine / distance**2)[:, None] * np.array(light.strength)
+    kept = whole * remaining_light(maps, strengths, at, normals)
+    return whole + np.array(scene.ambient), kept + np.array(scene.ambient)
