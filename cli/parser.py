@@ -39,7 +39,7 @@ def parser():
     verbs = _verbs_of(root, "verb")
     for name, module in VERBS.items():
         verb = verbs.add_parser(name, help=module.SUMMARY, description=_sentence(module.SUMMARY))
-        verb.add_argument("set", metavar="SET", type=Path, help=module.INPUT)
+        verb.add_argument("set", metavar="INPUT", type=Path, help=module.INPUT)
         verb.add_argument(
             "-o",
             "--output",
@@ -65,9 +65,9 @@ def _add_batch(verbs):
     inner = _verbs_of(root, "batch_verb")
     for name, module in VERBS.items():
         verb = inner.add_parser(name, help=module.SUMMARY)
-        verb.add_argument("sets", metavar="SET", type=Path, nargs="+", help="panorama sets (.json)")
+        verb.add_argument("sets", metavar="INPUT", type=Path, nargs="+", help=module.INPUT)
         verb.add_argument(
-            "--into", metavar="FOLDER", type=Path, required=True, help=f"for SET{module.SUFFIX}"
+            "--into", metavar="FOLDER", type=Path, required=True, help=f"for INPUT{module.SUFFIX}"
         )
         module.add_options(verb)
         _add_common(verb)
