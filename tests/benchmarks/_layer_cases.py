@@ -41,12 +41,12 @@ class Settings:
 
     folder: pathlib.Path
     charts: pathlib.Path
-    widths: tuple[int, ...] = (1024, 2048, 4096, 8192)
+    widths: tuple[int, ...] = (1024, 2048, 4096)
     usual: int = 4096
-    kinds_width: int = 2048
-    capture_samples: int = 2  # of the widest: a pixel of the usual width is the mean of four
+    kinds_width: int = 1024
+    capture_samples: int = 4  # and denoised
     size: tuple[int, int] = (960, 540)
-    truth_samples: int = 8  # and denoised, as the capture is
+    truth_samples: int = 8  # and denoised, too
     table: tuple[views.View, ...] = TABLE
     compared: tuple[views.View, ...] = COMPARED
     distances: tuple[float, ...] = DISTANCES

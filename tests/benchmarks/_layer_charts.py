@@ -46,6 +46,17 @@ def draw(document, path):
     plt.close(figure)
 
 
+def sheet(pictures, path):
+    """Pictures (H, W, 3) of display values by title, in rows of three."""
+    figure, axes = plt.subplots(2, 3, figsize=(12, 4.9), layout="constrained")
+    for axis, (title, picture) in zip(axes.flat, pictures.items(), strict=True):
+        axis.imshow(picture)
+        axis.set_title(title)
+        axis.axis("off")
+    figure.savefig(path, dpi=110, pil_kwargs={"quality": 90})
+    plt.close(figure)
+
+
 def _times(axis, rows):
     for method in STYLES:
         points = sorted((r for r in rows if r["method"] == method), key=lambda row: row["width"])

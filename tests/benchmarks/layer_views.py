@@ -1,9 +1,9 @@
 """Views of the sample room in layers by each method, against Cycles and the bound; their cost.
 
 Methods x views of Table 8.1 and C1; resolutions; kinds of layers; distances from the centre until beyond the
-radius. Writes docs/charts/layer_views.json and .png. Captures and truths are kept in out/bench/layers/. With
---toy all is tiny and goes to out/bench/layers_toy/. Seconds are the processor's; memory is what the
-process takes beside its panorama, and needs Linux.
+radius. Writes docs/charts/layer_views.json and .png, and C1's pictures, layer_views_c1.jpg. Captures and
+truths are kept in out/bench/layers/. With --toy all is tiny and goes to out/bench/layers_toy/. Seconds are
+the processor's; memory is what the process takes beside its panorama, and needs Linux.
 """
 
 import json
@@ -25,7 +25,7 @@ from expanded_panoramas.ibl_toolkit.layers.meshes.layer_mesh import quadtree_mes
 from expanded_panoramas.ibl_toolkit.layers.raster.mesh_view import mesh_view
 from expanded_panoramas.ibl_toolkit.layers.views.view_methods import METHODS
 from expanded_panoramas.sample_scenes.layered_room.bound import bound_view
-from expanded_panoramas.sample_scenes.layered_room.views import C1, pinhole
+from expanded_panoramas.sample_scenes.layered_room.views import C0, C1, pinhole
 
 BOUND = "bound"
 DEFINITIONS = {
@@ -59,6 +59,7 @@ def main():
     text = json.dumps(document, indent=1, ensure_ascii=False)
     (settings.charts / "layer_views.json").write_text(text + "\n", encoding="utf-8")
     charts.draw(document, settings.charts / "layer_views.png")
+    charts.sheet(c1_pictures(settings), settings.charts / "layer_views_c1.jpg")
     print(json.dumps(document["summary"], indent=1))
 
 
@@ -123,6 +124,21 @@ def figures(settings, view, found):
         "flip": round(float(flip_evaluator.evaluate(*shown, "LDR", applyMagma=False)[1]), 4),
         "holes": int(np.count_nonzero(found.holes)),
     }
+
+
+def c1_pictures(settings):
+    """Display values (H, W, 3) by title: C1 as it is, and as methods show it; the centre's view."""
+    camera = pinhole(C1, *settings.size)
+    two = cases.panorama(settings, cases.TWO, settings.usual)
+    made = cases.panorama(settings, cases.MADE, settings.kinds_width)
+    found = {method: METHODS[method](two, camera).radiance for method in ("adaptive", "quadtree", "mesh")}
+    pictures = {
+        "Cycles": cases.truth(settings, C1)[0],
+        **{f"{method}, two layers": picture for method, picture in found.items()},
+        "mesh, layers made of one RGB-D": METHODS["mesh"](made, camera).radiance,
+        "what the centre sees": METHODS["mesh"](two, pinhole(C0, *settings.size)).radiance,
+    }
+    return {title: metrics.display_values(picture) for title, picture in pictures.items()}
 
 
 def summary(settings, rows):
