@@ -36,13 +36,13 @@ def connect(
     the objects' render alone. ``plate`` stands for the backplate where the picture is the panorama itself, so
     that untouched pixels are the file's.
     """
-    tree = _scene_tree(scene)
+    tree = scene_tree(scene)
     for node in [n for n in tree.nodes if n.name.startswith(f"{GROUP} ")]:
         tree.nodes.remove(node)
     group = tree.nodes.get(GROUP)
     if group is None:
         group = add(tree, "CompositorNodeGroup", node_tree=_empty_group(), name=GROUP, label=GROUP)
-        tree.links.new(group.outputs["Image"], _output(tree).inputs[0])
+        tree.links.new(group.outputs["Image"], output_node(tree).inputs[0])
     _fill(group.node_tree, formula)
     for socket, (layer, name) in sources.items():
         tree.links.new(_pass(tree, scene, layer, name), group.inputs[socket])
@@ -70,7 +70,8 @@ def _empty_group():
     return new_group(GROUP, "CompositorNodeTree", {"Image": "NodeSocketColor"}, INPUTS)
 
 
-def _scene_tree(scene):
+def scene_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
+    """The scene's compositor, made where there is none."""
     if hasattr(scene, "compositing_node_group"):  # Blender 5.0
         if scene.compositing_node_group is None:
             scene.compositing_node_group = new_group(
@@ -91,7 +92,7 @@ def _pass(tree, scene, layer, name):
     return node.outputs.get(name) or node.outputs[NAMES_BEFORE_5[name]]
 
 
-def _output(tree):
+def output_node(tree: bpy.types.NodeTree) -> bpy.types.Node:
     """The node that holds the tree's picture."""
     kinds = ("NodeGroupOutput", "CompositorNodeComposite")
     output = next((n for n in tree.nodes if n.bl_idname in kinds), None)

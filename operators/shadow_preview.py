@@ -5,10 +5,22 @@ from __future__ import annotations
 import bpy
 
 from ..cycles_integration.roles import is_editable
-from ..cycles_integration.shadow_preview import KINDS, discard, has_surface, put_on, renew, settings_of
+from ..cycles_integration.shadow_preview import (
+    COMPOSITOR,
+    KINDS,
+    SHADER,
+    discard,
+    has_surface,
+    is_there,
+    put_on,
+    put_on_picture,
+    renew,
+    settings_of,
+)
 from . import shadow_watch
 from .reporting import Reporting, possible
 
+NO_LIGHT = "Add a light first: its shadow is shown"
 NEW_MATERIAL = "Shadow Receiver"
 
 
@@ -26,24 +38,39 @@ class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
 
     def work(self, context):
         """Make the map, and put the group on."""
-        scene = context.scene
-        preview = scene.panorama_shadow_preview
+        preview = context.scene.panorama_shadow_preview
         materials, bare, left = _sorted_out(_receivers(context))
-        light, before = light_for(context), preview.light
-        preview.light = light
-        try:
-            made = renew(preview, context.evaluated_depsgraph_get())
-        except ValueError:
-            preview.light = before
-            raise
+        warnings = _make(context, SHADER)
         for material in materials + _clothed(bare):
             put_on(material, preview.group, preview.darkness)
         shadow_watch.looks_changed(preview, context)
-        preview.problem = "; ".join(made.warnings)
-        for warning in (*left, *made.warnings):
+        for warning in (*left, *warnings):
             self.report({"WARNING"}, warning[0].upper() + warning[1:])
         count = len(materials) + bool(bare)
-        return f"Shadow of '{light.name}' on {count} material{'s' * (count > 1)}; {size_of(preview)}"
+        return f"Shadow of '{preview.light.name}' on {count} material{'s' * (count > 1)}; {size_of(preview)}"
+
+
+class PANORAMA_OT_composite_shadows(Reporting, bpy.types.Operator):
+    """Darken the rendered picture by the shadow of the light as a small device draws it: puts a node group
+    before the output of the compositor, fed by the passes Position and Normal. Materials stay as they are"""
+
+    bl_idname = "panorama.composite_shadows"
+    bl_label = "Shadows in the Compositor"
+
+    @classmethod
+    def poll(cls, context):
+        """There is a light."""
+        return possible(cls, "" if light_for(context) else NO_LIGHT)
+
+    def work(self, context):
+        """Make the map, and put the group before the output."""
+        preview = context.scene.panorama_shadow_preview
+        warnings = _make(context, COMPOSITOR)
+        put_on_picture(context.scene, context.view_layer, preview.composite_group, preview.darkness)
+        shadow_watch.looks_changed(preview, context)
+        for warning in warnings:
+            self.report({"WARNING"}, warning[0].upper() + warning[1:])
+        return f"Shadow of '{preview.light.name}' on the rendered picture; {size_of(preview)}"
 
 
 class PANORAMA_OT_renew_shadow_preview(Reporting, bpy.types.Operator):
@@ -65,7 +92,8 @@ class PANORAMA_OT_renew_shadow_preview(Reporting, bpy.types.Operator):
 
 
 class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
-    """Take the preview out of all materials, with its map; they look as before, and so does the light"""
+    """Take the preview out of all materials and the compositor, with its map. They are as before, and so is
+    the light"""
 
     bl_idname = "panorama.remove_shadow_preview"
     bl_label = "Remove Shadow Preview"
@@ -73,7 +101,7 @@ class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         """There is one."""
-        there = context.scene.panorama_shadow_preview.group is not None
+        there = is_there(context.scene.panorama_shadow_preview)
         return possible(cls, "" if there else "There is no preview")
 
     def work(self, context):
@@ -97,7 +125,7 @@ def preview_missing(context) -> str:
     if context.mode != "OBJECT":
         return "Leave edit mode first"
     if light_for(context) is None:
-        return "Add a light first: its shadow is shown"
+        return NO_LIGHT
     return "" if _receivers(context) else "Select the objects that receive the shadow"
 
 
@@ -110,9 +138,22 @@ def size_of(preview) -> str:
     return f"{settings.bytes_per_texel * settings.resolution**2 / 2**20:.3g} MiB on the device"
 
 
+def _make(context, kind):
+    """Make the map and a kind of group of the light that is to be shown -> warnings."""
+    preview = context.scene.panorama_shadow_preview
+    before, preview.light = preview.light, light_for(context)
+    try:
+        made = renew(preview, context.evaluated_depsgraph_get(), kind)
+    except ValueError:
+        preview.light = before
+        raise
+    preview.problem = "; ".join(made.warnings)
+    return made.warnings
+
+
 def _none_yet(scene):
     preview = scene.panorama_shadow_preview
-    if preview.group is None:
+    if not is_there(preview):
         return "There is no preview"
     return "Choose a light" if preview.light is None else ""
 
@@ -166,6 +207,7 @@ def _clothed(bare):
 
 classes = (
     PANORAMA_OT_preview_shadows,
+    PANORAMA_OT_composite_shadows,
     PANORAMA_OT_renew_shadow_preview,
     PANORAMA_OT_remove_shadow_preview,
 )

@@ -160,6 +160,10 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
     )
     image: PointerProperty(type=bpy.types.Image, description="The map's texels")
     group: PointerProperty(type=bpy.types.NodeTree, description="The node group that tests the map")
+    composite_image: PointerProperty(type=bpy.types.Image, description="The map's texels, as floats")
+    composite_group: PointerProperty(
+        type=bpy.types.NodeTree, description="The group that tests it on pictures"
+    )
     problem: StringProperty(description="What the map cannot show, or why it could not be made")
 
 

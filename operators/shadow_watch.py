@@ -11,8 +11,15 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
-from ..cycles_integration.shadow_preview import KINDS, nodes_of, renew, switch_off_shadow
-from ..cycles_integration.shadow_preview.upkeep import give_back_shadows
+from ..cycles_integration.shadow_preview import (
+    KINDS,
+    composite_nodes,
+    give_back_shadows,
+    is_there,
+    nodes_of,
+    renew,
+    switch_off_shadow,
+)
 
 SHORTEST_PAUSE = 0.1
 """Between two maps [s]."""
@@ -31,7 +38,7 @@ def mark(scene: bpy.types.Scene):
 def is_kept(scene: bpy.types.Scene) -> bool:
     """Whether the scene has a preview, and the switch is on."""
     preview = scene.panorama_shadow_preview
-    return preview.group is not None and preview.keep_current and scene.library is None
+    return is_there(preview) and preview.keep_current and scene.library is None
 
 
 def is_waiting() -> bool:
@@ -69,11 +76,11 @@ def settings_changed(preview, context):
 
 def looks_changed(preview, context):
     """How dark shadows are, and whose they are: no new map."""
-    if preview.group is None:
+    if not is_there(preview):
         return
-    for material in bpy.data.materials:
-        for node in nodes_of(material, preview.group):
-            node.inputs["Darkness"].default_value = preview.darkness
+    nodes = [node for material in bpy.data.materials for node in nodes_of(material, preview.group)]
+    for node in nodes + composite_nodes(preview.id_data, preview.composite_group):
+        node.inputs["Darkness"].default_value = preview.darkness
     if preview.replaces_own and preview.light is not None:
         switch_off_shadow(preview.light)
     else:

@@ -1,6 +1,7 @@
 """A floor with things on it whose nodes show how much of a light they say arrives, and what numpy says."""
 
 import tempfile
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -10,7 +11,9 @@ from mathutils import Vector
 
 from expanded_panoramas.cycles_integration import capture, shadow_preview
 from expanded_panoramas.cycles_integration.node_trees import add
+from expanded_panoramas.cycles_integration.rendering import write_render
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import visibility
+from expanded_panoramas.sample_scenes.closed_room_truth import read_picture
 
 SUN, LAMP = (-0.41, -0.23, 0.88), (-1.37, -0.83, 3.12)
 """Direction to the sun, and where a lamp is [m]."""
@@ -73,6 +76,16 @@ def rendered(width, engine="CYCLES"):
     by_name = {name.split(".", 1)[1]: pixels.ravel() for name, pixels in channels.items()}
     vectors = (np.stack([by_name[f"{name}.{k}"] for k in "XYZ"], axis=1) for name in ("Position", "Normal"))
     return by_name["Combined.R"], *vectors
+
+
+def composited(width):
+    """The finished picture (n,), red."""
+    scene = bpy.context.scene
+    scene.render.resolution_x = scene.render.resolution_y = width
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.exr"
+        write_render(scene, path)
+        return read_picture(path)[..., 0].ravel()
 
 
 def _render(scene, folder):

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..operators.shadow_preview import light_for, preview_missing
+from ..operators.shadow_preview import is_there, light_for, preview_missing
 from .steps import Step
 
 FILTERED = ("pcf", "vsm", "evsm")
@@ -16,22 +16,24 @@ class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
 
     def is_done(self, scene):
         """There is a preview."""
-        return scene.panorama_shadow_preview.group is not None
+        return is_there(scene.panorama_shadow_preview)
 
     def draw(self, context):
         """Light, method, offset, looks; and what makes and removes the preview."""
         layout, preview = self.layout, context.scene.panorama_shadow_preview
-        is_there = preview.group is not None
+        exists = is_there(preview)
         for names in (("light",), _map_names(preview), _offset_names(preview), ("darkness", "replaces_own")):
             column = layout.column(align=True)
             column.use_property_split, column.use_property_decorate = True, False
             for name in names:
                 column.prop(preview, name)
-        if not is_there and preview.light is None and light_for(context) is not None:
+        if not exists and preview.light is None and light_for(context) is not None:
             self.say(context, f"Without a choice it is '{light_for(context).name}'")
         self.say(context, preview_missing(context))
-        layout.operator("panorama.preview_shadows", icon="SHADING_RENDERED")
-        if not is_there:
+        column = layout.column(align=True)
+        column.operator("panorama.preview_shadows", icon="SHADING_RENDERED")
+        column.operator("panorama.composite_shadows", icon="NODE_COMPOSITING")
+        if not exists:
             return
         self.say(context, preview.problem, "ERROR")
         row = layout.row(align=True)

@@ -9,28 +9,36 @@ What the nodes give equals `ibl_toolkit.mobile.shadow_maps.visibility` within 1/
 """
 
 from .casters import KINDS, casters_of
+from .composite import composite_nodes, put_on_picture, take_off_picture
 from .group import WIDEST_WINDOW, aim_group, build_group, fits
+from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_map_of
 from .map_image import store_map
 from .receivers import has_surface, nodes_of, put_on, take_off
-from .upkeep import discard, give_back_shadows, renew, settings_of, switch_off_shadow
+from .upkeep import discard, give_back_shadows, is_there, renew, settings_of, switch_off_shadow
 
 __all__ = [
+    "COMPOSITOR",
     "KINDS",
+    "SHADER",
     "WIDEST_WINDOW",
     "aim_group",
     "build_group",
     "casters_of",
+    "composite_nodes",
     "discard",
     "fits",
     "give_back_shadows",
     "has_surface",
+    "is_there",
     "nodes_of",
     "put_on",
+    "put_on_picture",
     "renew",
     "settings_of",
     "shadow_map_of",
     "store_map",
     "switch_off_shadow",
     "take_off",
+    "take_off_picture",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings, evsm, vsm
 from ..node_trees import add, maths
+from .kinds import GROUP_NODES
 
 
 class DepthTest:
@@ -43,7 +44,11 @@ class DepthTest:
     def read(self, column, row, depth=0.0):
         """Both numbers of a texel."""
         inputs = {"Column": column, "Row": row, "Depth": depth}
-        return list(add(self.tree, "ShaderNodeGroup", inputs, node_tree=self.texel, name="Texel").outputs)
+        return list(
+            add(
+                self.tree, GROUP_NODES[self.tree.bl_idname], inputs, node_tree=self.texel, name="Texel"
+            ).outputs
+        )
 
     def is_lit(self, column, row):
         """1 where the depth is not beyond the stored one (GL_LEQUAL), else 0."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..node_trees import add, maths, new_group, output_group, vector_maths
+from .kinds import SHADER
 
 NAME = "Shadow Map Light"
 _OUTPUTS = ("S", "T", "Depth", "Linear Depth", "Inside", "Facing")
@@ -11,7 +12,7 @@ _BEFORE_LAMP = 1e-6
 """Distance along forward [m] from which on a lamp sees."""
 
 
-def new_projection(perspective: bool):
+def new_projection(perspective: bool, kind: str = SHADER):
     """A node group: the numbers of a light camera, as `light_numbers` has them → place, depth and more.
 
     S, T: on the map, 0 to 1. Depth: r as a depth buffer has it, Linear Depth: linear in metres, both cut off
@@ -22,7 +23,7 @@ def new_projection(perspective: bool):
     inputs = {"Position": "NodeSocketVector", "Normal": "NodeSocketVector"}
     inputs |= dict.fromkeys(("Eye", *_AXES), "NodeSocketVector")
     inputs |= dict.fromkeys(("Near", "Far"), "NodeSocketFloat")
-    tree = new_group(NAME, "ShaderNodeTree", dict.fromkeys(_OUTPUTS, "NodeSocketFloat"), inputs)
+    tree = new_group(NAME, kind, dict.fromkeys(_OUTPUTS, "NodeSocketFloat"), inputs)
     given = add(tree, "NodeGroupInput").outputs
     away = vector_maths(tree, "SUBTRACT", given["Position"], given["Eye"])
     right, up, forward = (vector_maths(tree, "DOT_PRODUCT", away, given[k]) for k in _AXES)

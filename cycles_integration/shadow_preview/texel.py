@@ -7,6 +7,7 @@ import bpy
 from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings
 from ...ibl_toolkit.mobile.shadow_maps.storage import STEPS
 from ..node_trees import add, maths, new_group, output_group
+from .kinds import SHADER
 
 NAME = "Shadow Map Texel"
 MOST_ABOVE = 30.0
@@ -14,27 +15,42 @@ MOST_ABOVE = 30.0
 float is full."""
 
 
-def new_texel(settings: ShadowSettings, image: bpy.types.Image):
+def new_texel(settings: ShadowSettings, image: bpy.types.Image, kind: str = SHADER):
     """A node group: column and row [texels, from the map's lower left; cut off at its border] → numbers.
 
     First and Second are the depth, or the two moments. Those of `evsm` are divided by x and x² of the point
     whose linear depth is the input Depth: exp(2c z) alone is more than a 32-bit float holds well.
     """
     inputs = dict.fromkeys(("Column", "Row", "Depth"), "NodeSocketFloat")
-    tree = new_group(NAME, "ShaderNodeTree", dict.fromkeys(("First", "Second"), "NodeSocketFloat"), inputs)
+    tree = new_group(NAME, kind, dict.fromkeys(("First", "Second"), "NodeSocketFloat"), inputs)
     given = add(tree, "NodeGroupInput").outputs
     size = settings.resolution
     middles = [_middle(tree, given[side], size) for side in ("Column", "Row")]
-    place = add(tree, "ShaderNodeCombineXYZ", dict(enumerate(middles))).outputs[0]
-    looks = {"image": image, "interpolation": "Closest", "extension": "EXTEND"}
-    texture = add(tree, "ShaderNodeTexImage", {"Vector": place}, **looks)
-    channels = add(tree, "ShaderNodeSeparateColor", {"Color": texture.outputs["Color"]}).outputs
-    bytes_ = (*channels, texture.outputs["Alpha"])
-    first, second = _numbers(tree, bytes_, settings.storage)
+    place = add(tree, "ShaderNodeCombineXYZ", {0: middles[0], 1: middles[1], 2: 1.0}).outputs[0]
+    read = _read_in_shader if kind == SHADER else _read_in_compositor
+    first, second = _numbers(tree, read(tree, image, place), settings.storage)
     if settings.method == "evsm":
         first, second = _exponential(tree, first, second, given["Depth"], settings)
     output_group(tree, First=first, Second=second)
     return tree
+
+
+def _read_in_shader(tree, image, place):
+    looks = {"image": image, "interpolation": "Closest", "extension": "EXTEND"}
+    texture = add(tree, "ShaderNodeTexImage", {"Vector": place}, **looks)
+    channels = add(tree, "ShaderNodeSeparateColor", {"Color": texture.outputs["Color"]}).outputs
+    return (*channels, texture.outputs["Alpha"])
+
+
+def _read_in_compositor(tree, image, place):
+    """The third coordinate, 1, is what the node multiplies the image with."""
+    picture = add(tree, "CompositorNodeImage", image=image).outputs["Image"]
+    texture = add(tree, "CompositorNodeMapUV", {"Image": picture, "UV": place})
+    if "Interpolation" in texture.inputs:  # Blender 5.0
+        texture.inputs["Interpolation"].default_value = "Nearest"
+    else:
+        texture.filter_type = "NEAREST"
+    return add(tree, "CompositorNodeSeparateColor", {"Image": texture.outputs["Image"]}).outputs
 
 
 def _middle(tree, index, size):

@@ -6,12 +6,19 @@ import bpy
 
 from ...ibl_toolkit.mobile.shadow_maps import ShadowMap, ShadowSettings
 from ...ibl_toolkit.mobile.shadow_maps.suggestion import offsets
+from .composite import take_off_picture
 from .group import aim_group, build_group, fits, refuse_wide
+from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_map_of
 from .map_image import store_map
 from .receivers import take_off
 
-MAP, GROUP = "Shadow Map", "Shadow Map Preview"
+MAP = "Shadow Map"
+KINDS_OF = {
+    SHADER: ("image", "group", "Shadow Map Preview"),
+    COMPOSITOR: ("composite_image", "composite_group", "Shadow Map Composite"),
+}
+"""Kind of node tree → the preview's properties for its image and group, and the group's name."""
 OWN_SHADOW = "panorama_own_shadow"
 """Custom property of a light whose own shadow the preview has switched off."""
 
@@ -38,35 +45,55 @@ def settings_of(preview) -> ShadowSettings:
     return settings
 
 
-def renew(preview, depsgraph: bpy.types.Depsgraph) -> ShadowMap:
+def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> ShadowMap:
     """Make the map of the preview's light anew, and what shows it as far as that has to change.
 
+    more: of KINDS_OF, those groups that the preview shall have beside the ones that it has.
     Raises ValueError, with all as it was, where no map can be made.
     """
     made = shadow_map_of(preview.light, depsgraph, settings_of(preview))
-    image = store_map(made, preview.image, MAP)
-    if preview.image != image:
-        preview.image = image
-    if fits(preview.group, made, image):
-        aim_group(preview.group, made)
-    else:
-        preview.group = build_group(made, image, preview.group, GROUP)
+    for kind, (image_name, group_name, name) in KINDS_OF.items():
+        if kind in more or getattr(preview, group_name) is not None:
+            image = store_map(made, getattr(preview, image_name), MAP, as_floats=kind == COMPOSITOR)
+            _keep(preview, image_name, image)
+            group = getattr(preview, group_name)
+            if fits(group, made, image):
+                aim_group(group, made)
+            else:
+                _keep(preview, group_name, build_group(made, image, group, name, kind))
     return made
 
 
 def discard(preview):
-    """Take the preview out of all materials and the file; lights have their own shadows again."""
-    group, image = preview.group, preview.image
-    preview.group = preview.image = None
+    """Take the preview out of materials, compositor and file; lights have their own shadows again."""
     give_back_shadows()
-    if group is not None:
-        for material in bpy.data.materials:
-            take_off(material, group)
-        inner = {node.node_tree for node in group.nodes if node.type == "GROUP"}
-        for tree in (group, *filter(None, inner)):
-            bpy.data.node_groups.remove(tree)
-    if image is not None:
-        bpy.data.images.remove(image)
+    for image_name, group_name, _ in KINDS_OF.values():
+        image, group = getattr(preview, image_name), getattr(preview, group_name)
+        setattr(preview, image_name, None)
+        setattr(preview, group_name, None)
+        if group is not None:
+            _remove(group, preview.id_data)
+        if image is not None:
+            bpy.data.images.remove(image)
+
+
+def is_there(preview) -> bool:
+    """Whether a scene has a preview, in materials or in its compositor."""
+    return preview.group is not None or preview.composite_group is not None
+
+
+def _keep(preview, name, value):
+    if getattr(preview, name) != value:  # else the scene would count as changed
+        setattr(preview, name, value)
+
+
+def _remove(group, scene):
+    for material in bpy.data.materials:
+        take_off(material, group)
+    take_off_picture(scene, group)
+    inner = {node.node_tree for node in group.nodes if node.type == "GROUP"}
+    for tree in (group, *filter(None, inner)):
+        bpy.data.node_groups.remove(tree)
 
 
 def switch_off_shadow(light: bpy.types.Object):

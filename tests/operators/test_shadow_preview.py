@@ -75,6 +75,37 @@ def test_what_is_rendered_is_darkened_where_numpy_says(scene):
     assert np.sort(off)[-3] <= 1 / 255
 
 
+@pytest.mark.parametrize("storage", ["float32", "8+8", "16+16"])
+def test_the_compositor_darkens_the_picture_likewise(scene, storage):
+    (material,) = bpy.data.materials
+    output = next(n for n in material.node_tree.nodes if n.type == "OUTPUT_MATERIAL")
+    glow = material.node_tree.nodes.new("ShaderNodeEmission")
+    material.node_tree.links.new(glow.outputs[0], output.inputs["Surface"])
+    preview = scene.panorama_shadow_preview
+    preview.storage, preview.darkness = storage, 0.6
+    scene.camera.data.ortho_scale = 7  # beyond the floor there is the world, which stays as it is
+    scene.world = bpy.data.worlds.new("grey")
+    _, points, normals = shadow_pictures.rendered(48)
+    before = shadow_pictures.composited(48)
+    assert bpy.ops.panorama.composite_shadows() == {"FINISHED"}
+    bpy.ops.panorama.composite_shadows()
+    bpy.data.objects["ball"].location.x -= 0.1
+    bpy.context.view_layer.update()
+    bpy.data.objects["ball"].location.x += 0.1
+    bpy.context.view_layer.update()
+    shown = shadow_pictures.composited(48)
+    made = shadow_preview.renew(preview, bpy.context.evaluated_depsgraph_get())
+    there = np.linalg.norm(normals, axis=1) > 0.5
+    assert 0.1 < there.mean() < 0.9
+    off = shadow_pictures.differences(made, 1 - (1 - shown) / 0.6, points, normals)
+    assert np.sort(off[there])[-3] <= 1 / 255
+    assert np.array_equal(shown[~there], before[~there])
+    bpy.ops.panorama.remove_shadow_preview()
+    assert np.array_equal(shadow_pictures.composited(48), before)
+    blocks = (*bpy.data.node_groups, *bpy.data.images)
+    assert not [block for block in blocks if block.name.startswith("Shadow Map")]
+
+
 def test_objects_without_a_material_get_one_and_undo_takes_it(scene):
     bpy.data.objects["plane"].data.materials.clear()
     bpy.ops.ed.undo_push()
