@@ -6,7 +6,7 @@ import bpy
 
 from ..compositor import output_node, scene_tree
 from ..node_trees import add
-from .receivers import NODE
+from .receivers import NODE, nodes_in
 
 _LAYER = f"{NODE} Passes"
 
@@ -36,10 +36,9 @@ def take_off_picture(scene: bpy.types.Scene, group: bpy.types.NodeTree):
         tree.nodes.remove(passes)
 
 
-def composite_nodes(scene: bpy.types.Scene, group: bpy.types.NodeTree) -> list[bpy.types.Node]:
+def composite_nodes(scene: bpy.types.Scene, group: bpy.types.NodeTree | None) -> list[bpy.types.Node]:
     """The group's nodes in the scene's compositor."""
-    tree = _tree_of(scene)
-    return [n for n in tree.nodes if n.type == "GROUP" and n.node_tree == group] if tree else []
+    return nodes_in(_tree_of(scene), group)
 
 
 def _inserted(tree, scene, view_layer, group):

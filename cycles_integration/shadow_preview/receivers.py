@@ -34,10 +34,16 @@ def take_off(material: bpy.types.Material, group: bpy.types.NodeTree):
             tree.links.new(sources[0], target)
 
 
-def nodes_of(material: bpy.types.Material, group: bpy.types.NodeTree) -> list[bpy.types.Node]:
-    """The group's nodes in a material, wherever an artist has them."""
-    tree = material.node_tree
-    return [n for n in tree.nodes if n.type == "GROUP" and n.node_tree == group] if tree else []
+def nodes_of(material: bpy.types.Material, group: bpy.types.NodeTree | None) -> list[bpy.types.Node]:
+    """The group's nodes in a material, wherever an artist has them; of no group none."""
+    return nodes_in(material.node_tree, group)
+
+
+def nodes_in(tree: bpy.types.NodeTree | None, group: bpy.types.NodeTree | None) -> list[bpy.types.Node]:
+    """The group's nodes in a tree, if there are both."""
+    if tree is None or group is None:
+        return []
+    return [node for node in tree.nodes if node.type == "GROUP" and node.node_tree == group]
 
 
 def has_surface(material: bpy.types.Material) -> bool:

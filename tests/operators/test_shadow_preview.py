@@ -106,6 +106,19 @@ def test_the_compositor_darkens_the_picture_likewise(scene, storage):
     assert not [block for block in blocks if block.name.startswith("Shadow Map")]
 
 
+def test_groups_of_others_are_left_alone(scene):
+    """Even such as have lost their tree, while there is no preview in materials."""
+    (material,) = bpy.data.materials
+    lost = material.node_tree.nodes.new("ShaderNodeGroup")
+    bpy.ops.panorama.composite_shadows()
+    preview = scene.panorama_shadow_preview
+    preview.darkness = 0.3
+    (node,) = shadow_preview.composite_nodes(scene, preview.composite_group)
+    assert node.inputs["Darkness"].default_value == pytest.approx(0.3)
+    bpy.ops.panorama.remove_shadow_preview()
+    assert lost.name in material.node_tree.nodes
+
+
 def test_objects_without_a_material_get_one_and_undo_takes_it(scene):
     bpy.data.objects["plane"].data.materials.clear()
     bpy.ops.ed.undo_push()
