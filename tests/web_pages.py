@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -30,15 +31,28 @@ _TURN = 0.6
 SUN, LAMP = (0.5, -0.6, 0.9), (-1.4, -1.1, 2.6)
 
 
-def photographed(page, folder, size=SIZE, chromium=CHROMIUM):
-    """What Chromium shows of a page: (H, W, 3) from 0 to 255."""
-    picture, profile = Path(folder) / "page.png", Path(folder) / "profile"
-    subprocess.run(
-        [chromium, *FLAGS, f"--user-data-dir={profile}", f"--window-size={size[0]},{size[1]}",
-         f"--screenshot={picture}", Path(page).resolve().as_uri()],
-        check=True, capture_output=True, timeout=120,
-    )  # fmt: skip
-    return cv2.cvtColor(cv2.imread(str(picture)), cv2.COLOR_BGR2RGB)
+def photographed(pages, folder, size=SIZE):
+    """What Chromium shows of each page: (N, H, W, 3) from 0 to 255. They are on one sheet: it starts slowly."""
+    folder = Path(folder)
+    width, height = size
+    frames = "".join(
+        f'<iframe src="{Path(page).resolve().as_uri()}" width="{width}" height="{height}" '
+        'style="display: block; border: 0"></iframe>'
+        for page in pages
+    )
+    sheet, picture = folder / "sheet.html", folder / "sheet.png"
+    sheet.write_text(f'<!doctype html><body style="margin: 0">{frames}', encoding="utf-8")
+    chromium(
+        folder, f"--window-size={width},{height * len(pages)}", f"--screenshot={picture}", sheet.as_uri()
+    )
+    shown = cv2.cvtColor(cv2.imread(str(picture)), cv2.COLOR_BGR2RGB)
+    return shown.reshape(len(pages), height, width, 3)
+
+
+def chromium(folder, *arguments):
+    """Run Chromium, with a profile in a folder -> what it prints."""
+    command = [CHROMIUM, *FLAGS, f"--user-data-dir={Path(folder) / 'profile'}", *arguments]
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=300).stdout
 
 
 def still_life(lights=("sun",), roles=("support", "synthetic", "synthetic"), ambient=0.3):
@@ -57,13 +71,13 @@ def still_life(lights=("sun",), roles=("support", "synthetic", "synthetic"), amb
     normals = (ball[0] - solids[1].centre) / 0.3
     meshes = (
         SceneMesh("floor", *floor, roles[0]),
-        SceneMesh("box", *_outward(*box), roles[1], (0.7, 0.3, 0.2)),
+        SceneMesh("box", *outward(*box), roles[1], (0.7, 0.3, 0.2)),
         SceneMesh("ball", *ball, roles[2], (0.2, 0.4, 0.7), normals),
     )
     return ShadowScene(meshes, [cameras[name] for name in lights], (ambient,) * 3)
 
 
-def _outward(points, triangles):
+def outward(points, triangles):
     """Triangles of a convex solid turned so that they are counter-clockwise from outside."""
     corners = points[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -71,17 +85,26 @@ def _outward(points, triangles):
     return points, np.where(inward[:, None], triangles[:, ::-1], triangles)
 
 
-def measured(scene, settings, background, folder, view=None):
-    """By how much Chromium's picture differs, 0 to 255, the worst channel; the outlines; the picture.
+@dataclass(frozen=True)
+class Shown:
+    """Chromium's picture (H, W, 3), and by how much it differs from numpy's, the worst channel (H, W).
 
-    The page is written to `folder`.
+    outlines: (H, W) bool, see `expected`.
     """
-    view = view or camera()
-    page = Path(folder) / "page.html"
-    write_page(page, scene, [settings], background, view)
-    shown = photographed(page, folder, (view.width, view.height))
-    right, outlines = expected(scene, settings, background, view, background.jpeg(page))
-    return np.abs(shown - right).max(axis=2), outlines, shown
+
+    picture: np.ndarray
+    off: np.ndarray
+    outlines: np.ndarray
+
+
+def measured(cases, folder):
+    """A Shown of each case (scene, settings, background), whose pages are written to a folder."""
+    view, pages = camera(), [Path(folder) / f"{number}.html" for number in range(len(cases))]
+    for page, (scene, settings, background) in zip(pages, cases, strict=True):
+        write_page(page, scene, [settings], background, view)
+    for picture, case in zip(photographed(pages, folder), cases, strict=True):
+        right, outlines = expected(*case, view, case[2].jpeg("a page"))
+        yield Shown(picture, np.abs(picture - right).max(axis=2), outlines)
 
 
 def camera():
