@@ -32,7 +32,7 @@ SUN, LAMP = (0.5, -0.6, 0.9), (-1.4, -1.1, 2.6)
 
 
 def photographed(pages, folder, size=SIZE):
-    """What Chromium shows of each page: (N, H, W, 3) from 0 to 255. They are on one sheet: it starts slowly."""
+    """What Chromium shows of each page, all on one sheet: (N, H, W, 3) from 0 to 255."""
     folder = Path(folder)
     width, height = size
     frames = "".join(
