@@ -162,7 +162,7 @@ def _extras(scene, settings, camera, background):
     return {
         "lights": [_light(light) for light in scene.lights],
         "ambient": [float(v) for v in scene.ambient],
-        "shadow_settings": [{**asdict(one), "label": label(one)} for one in settings],
+        "shadow_settings": [_kind(one) for one in settings],
         "camera": {
             "eye": np.asarray(camera.eye, dtype=float).tolist(),
             "axes": np.asarray(camera.axes, dtype=float).tolist(),
@@ -172,6 +172,11 @@ def _extras(scene, settings, camera, background):
         "far": float(max(farthest * _MARGIN, 2 * _NEAREST)),
         "background": background,
     }
+
+
+def _kind(settings):
+    whole = {"resolution": int(settings.resolution), "window": int(settings.window)}  # numpy's may be given
+    return {**asdict(settings), **whole, "label": label(settings)}
 
 
 def _light(light):

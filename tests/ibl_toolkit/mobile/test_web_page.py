@@ -16,7 +16,7 @@ from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import ShadowSettings
 from expanded_panoramas.ibl_toolkit.mobile.shadow_scene import SceneLight, SceneMesh, ShadowScene, scene_glb
 from expanded_panoramas.ibl_toolkit.mobile.web_page import SOURCES, WIDEST, Background, write_page
 
-SETTINGS = [ShadowSettings("pcf", 256, "8+8", 3), ShadowSettings("hard", 512, "float32")]
+SETTINGS = [ShadowSettings("pcf", np.int64(256), "8+8", np.int64(3)), ShadowSettings("hard", 512, "float32")]
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 
 
