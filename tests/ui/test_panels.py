@@ -109,7 +109,7 @@ def test_it_follows_the_work(fresh_blend, tmp_path):
 def test_layers_say_what_is_there_and_what_is_missing(fresh_blend, tmp_path):
     layers = fresh_blend.context.scene.panorama_layers
     texts = draw_all(fresh_blend)["PANORAMA_PT_layers"]
-    assert "Calibrate first" in texts
+    assert "Open a panorama, or add a camera" in texts
     assert "Choose a folder with layers, or make them" in texts
     write_layers(layered_box(), tmp_path / "box")
     layers.folder = str(tmp_path / "box")
