@@ -110,7 +110,7 @@ def _room_and_objects(settings, width):
 
 
 def _successive(settings, width):
-    options = LayerCapture(width=width, samples=9, denoise=True)
+    options = LayerCapture(width=width, samples=settings.capture_samples, denoise=True)
     room = scene.new_room()
     return split_surfaces(capture_surfaces(room, frame_of(room, sizes.ORIGIN), sizes.RADIUS, options))
 
