@@ -57,5 +57,7 @@ def test_tolerance_would_not_let_a_wrong_window_pass():
 def test_page_says_what_the_device_lacks(tmp_path):
     page = tmp_path / "page.html"
     write_page(page, still_life(), [suggested_settings(4.0, 64)], sky(), web_pages.camera())
-    shown = web_pages.chromium(tmp_path, "--disable-3d-apis", "--dump-dom", page.as_uri())
-    assert "<output>this browser or device has no WebGL 2</output>" in shown
+    command = tmp_path, "--disable-3d-apis", "--dump-dom", page.as_uri()
+    # A busy machine's browser may dump the page before its modules have run: it is asked up to three times.
+    shown = (web_pages.chromium(*command) for _ in range(3))
+    assert any("<output>this browser or device has no WebGL 2</output>" in page for page in shown)
