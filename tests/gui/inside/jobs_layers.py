@@ -1,12 +1,14 @@
-"""Jobs of the sidebar's last step: layers are made, opened and written by its buttons. Runs in Blender."""
+"""Jobs of the sidebar's last step but one: layers are made, opened and written by its buttons. Runs in Blender."""
 
 import bpy
 import look
 from jobs_sidebar import choose_file, import_set
 from waiting import Until
 
-ABOVE_EDGE = 12
-"""Middle of the last panel's header above the lower edge of the sidebar that is scrolled down [px]."""
+LAST_HEADER = 26
+"""Height of the last panel, which is closed, at the lower edge of the sidebar that is scrolled down [px]."""
+ABOVE = 12
+"""Middle of the header of the panel before it, above that [px]."""
 PANEL = 250
 """Height of the panel [px]."""
 MINUTES = 180
@@ -24,13 +26,13 @@ def press(stage, *words):
     yield
 
 
-def open_last_panel(stage):
-    """Scroll down, open the closed panel at the end, scroll down again."""
+def open_panel(stage):
+    """Scroll down, open the closed panel before the last, scroll down again."""
     sidebar = look.region(view(), "UI")
     yield from stage.hand.move(*look.middle(sidebar))
     yield from stage.hand.wheel("WHEELDOWNMOUSE", 60)
     yield
-    yield from stage.hand.click(sidebar.x + 0.4 * sidebar.width, sidebar.y + ABOVE_EDGE)
+    yield from stage.hand.click(sidebar.x + 0.4 * sidebar.width, sidebar.y + LAST_HEADER + ABOVE)
     for _ in range(20):  # it unrolls
         yield
     yield from stage.hand.move(*look.middle(sidebar))
@@ -47,12 +49,13 @@ def make_open_and_write(stage):
     stage.note(can_before=can())
     bpy.ops.wm.save_as_mainfile(filepath=str(stage.folder / "room.blend"))
     layers.folder, layers.width = "//layers", 1024
-    yield from open_last_panel(stage)
+    yield from open_panel(stage)
     yield from press(stage, "panorama.make_layers")
     yield Until(lambda: layers.found, "layers", MINUTES)
     stage.note(found=layers.found, files=sorted(path.suffix for path in (stage.folder / "layers").iterdir()))
     sidebar = look.region(view(), "UI")
-    yield from stage.picture("layers_panel", (sidebar.x, sidebar.y, sidebar.width, PANEL))
+    panel = sidebar.x, sidebar.y + LAST_HEADER, sidebar.width, PANEL
+    yield from stage.picture("layers_panel", panel)
     yield from press(stage, "panorama.open_layers")
     yield Until(lambda: bpy.context.scene.name == "Layers", "the scene of the layers")
     scene = bpy.context.scene
