@@ -1,8 +1,8 @@
 """Continuous layers of the successive surfaces along rays.
 
 A layer of successive surfaces is of many things, and its depth jumps from one to the next. The first surfaces
-are split as those of an RGB-D panorama are; what was found behind them goes to the background, where a
-picture alone would have to be continued.
+are split as those of an RGB-D panorama are; the farthest that was found behind them goes to the background,
+where a picture alone would have to be continued. What is between stays in layers of its own.
 
 Source: thesis, 6.2 (eq. 6.10, a layer is continuous) and 6.3.2.
 """
@@ -26,8 +26,8 @@ def continuous_layers(
 
     surfaces: names of the layers that follow each other along the rays, the first of the whole sphere; all of
     one size. count: layers at most that the first is split into; None for as many as it takes. Behind them
-    the farthest surface known of each ray is taken; those between are left out. Another layer is dealt to as
-    many as it takes for no depth to jump in any.
+    the farthest surface known of each ray is taken. Those between, and each other layer, are dealt to as many
+    as it takes for no depth to jump from one of their pieces to the next.
 
     Raises: ValueError for surfaces of several sizes, or a first that leaves parts of the sphere out.
     """
@@ -42,7 +42,7 @@ def continuous_layers(
     radius = panorama.radius
     near = grid.flat(nearness(first.depth))
     layers = split_layers(grid, near, grid.flat(first.radiance), radius, count, behind, colours)
-    rest = [layer for layer in panorama.layers if layer.name not in set(surfaces)]
+    rest = [*_between(others), *(layer for layer in panorama.layers if layer.name not in set(surfaces))]
     dealt = [part for layer in rest for part in _dealt(layer, radius)]
     place = panorama.world_from_panorama, panorama.origin, radius
     return LayeredPanorama((*layers, *dealt), *place)
@@ -57,6 +57,16 @@ def _farthest(grid: PixelGrid, surfaces):
         near[mask] = grid.flat(nearness(layer.depth))[mask]
         colours[mask] = grid.flat(layer.radiance)[mask]
     return near, colours
+
+
+def _between(surfaces):
+    """Of some layers that follow each other what has one of the later ones behind it."""
+    for number, layer in enumerate(surfaces[:-1], 1):
+        inside = layer.mask & np.logical_or.reduce([later.mask for later in surfaces[number:]])
+        if inside.any():
+            depth = np.where(inside, layer.depth, np.float32(np.nan))
+            attributes = {name: values for name, values in layer.attributes.items() if name != "mask"}
+            yield Layer(layer.name, layer.mapping, {**attributes, "depth": depth})
 
 
 def _dealt(layer: Layer, radius):

@@ -1,4 +1,4 @@
-"""Jobs of the sidebar's last step but one: layers are made, opened and written by its buttons. Runs in Blender."""
+"""Jobs of the sidebar's step of layers: they are made, opened and written by its buttons. Runs in Blender."""
 
 import bpy
 import look

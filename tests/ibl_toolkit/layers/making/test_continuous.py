@@ -39,6 +39,22 @@ def test_what_was_found_behind_goes_to_the_background():
     assert (made.radius, made.origin.tolist()) == (RADIUS, [1, 2, 3])
 
 
+def test_what_is_between_stays_where_something_is_behind():
+    """Behind the card a flap, of which the wall is behind one half only."""
+    left = CARD & (DIRECTIONS[..., 1] > 0)
+    first = captured().layers[0]
+    flap = layer("surface 2", np.where(CARD, FLAP, np.nan), (1, 0, 0))
+    wall = layer("surface 3", np.where(left, WALL, np.nan), HIDDEN)
+    found = LayeredPanorama((first, flap, wall), np.eye(3), np.zeros(3), RADIUS)
+    made = continuous_layers(found, ("surface 1", "surface 2", "surface 3"))
+    background, _, between = made.layers
+    np.testing.assert_allclose(background.depth[left], WALL, rtol=1e-5)
+    np.testing.assert_allclose(background.depth[CARD & ~left], FLAP, rtol=1e-5)
+    assert between.name == "surface 2"
+    np.testing.assert_array_equal(between.mask, left)
+    np.testing.assert_array_equal(between.depth[left], np.float32(FLAP))
+
+
 def test_other_layers_are_dealt_until_no_depth_jumps():
     upper = CARD & (DIRECTIONS[..., 2] > 0)
     back = layer("back of surface 1", np.where(upper, FLAP, np.where(CARD, FRONT, np.nan)))
