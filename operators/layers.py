@@ -6,7 +6,7 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from ..cycles_integration import roles
-from ..cycles_integration.layer_capture import LayerCapture, capture_surfaces, split_surfaces
+from ..cycles_integration.layer_capture import LayerCapture, capture_surfaces
 from ..cycles_integration.layer_objects import add_layers
 from ..cycles_integration.layer_scene import frame_of
 from ..cycles_integration.pieces import PIECE
@@ -43,14 +43,15 @@ def make_layers(scene, tell, folder, radius, width, most):
 
 
 def _captured(scene, tell, radius, width, most):
+    """Surfaces as they are rendered: meshes bridge their jumps, where split layers would show slits."""
     path = bpy.path.abspath(scene.panorama_set.image_path)
     if not path:
         cycles = scene.cycles
         options = LayerCapture(width, cycles.samples, most, cycles.use_denoising, cycles.seed)
-        return split_surfaces(capture_surfaces(scene, frame_of(scene), radius, options, tell), most)
+        return capture_surfaces(scene, frame_of(scene), radius, options, tell)
     if [thing.get(PIECE) for thing in roles.real_objects(scene)] != [DEPTH] or not is_rgbd(path):
         options = LayerCapture(width=width, samples=1, most=most)
-        return split_surfaces(capture_place(scene, radius, options, tell), most)
+        return capture_place(scene, radius, options, tell)
     tell("layers")  # of the file's own depth, which that one surface follows only so far
     return layers_of(read_rgbd(path), radius, most)
 

@@ -16,14 +16,14 @@ def test_nothing_can_be_opened_before_there_is_something(found):
 
 
 def test_layers_are_made(found):
-    assert found["found"].startswith("background")
+    assert found["found"].startswith("surface 1")
     assert found["files"].count(".xml") == 1
     assert found["files"].count(".exr") >= 4
 
 
 def test_they_are_opened_in_a_scene_of_their_own(found):
     assert "Layers Origin" in found["objects"]
-    assert "background" in found["objects"]
+    assert "surface 1" in found["objects"]
 
 
 def test_they_are_written(found):
