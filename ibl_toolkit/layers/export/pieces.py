@@ -9,6 +9,7 @@ import numpy as np
 
 from ..meshes.bounded_mesh import bounded_mesh
 from ..meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
+from ..meshes.parallax import pixel_angle
 from ..panorama import Layer, LayeredPanorama
 from ..views.rendered_view import sampled
 from .refinement import refined
@@ -105,8 +106,8 @@ def far_radius(panorama: LayeredPanorama) -> float:
     So large that within the panorama's radius it moves by less than a pixel against infinity (6.2.4), ten
     times the farthest surface, and 10 m, whichever is most.
     """
-    pixels_per_radian = max(layer.size[0] for layer in panorama.layers) / (2 * np.pi)
-    return max(panorama.radius * pixels_per_radian, _FAR_TIMES * _farthest(panorama), _LEAST_FAR)
+    smallest_pixel = min(map(pixel_angle, panorama.layers))
+    return max(panorama.radius / smallest_pixel, _FAR_TIMES * _farthest(panorama), _LEAST_FAR)
 
 
 def checked_far(panorama: LayeredPanorama, far: float | None) -> float:

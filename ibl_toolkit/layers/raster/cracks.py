@@ -10,12 +10,14 @@ import math
 
 import numpy as np
 
-from ..panorama import CUBE_MAP, LayeredPanorama
+from ..meshes.parallax import pixel_angle
+from ..panorama import LayeredPanorama
 from ..views.pinhole import Pinhole
 from ..views.rendered_view import RenderedView
 
 WIDEST = 2.0
-"""How wide a crack may be, in pixels of the coarsest layer as they are seen from the origin."""
+"""How wide a crack may be, in pixels of the finest layer as they are seen from the origin: what is wider may
+be a hole in that layer's domain."""
 _SAME_SURFACE = 1.05  # the largest ratio of the depths on both sides
 _WAYS = ((0, 1), (1, 0), (1, 1), (1, -1))  # rows and columns
 
@@ -27,13 +29,8 @@ def without_cracks(view: RenderedView, panorama: LayeredPanorama, camera: Pinhol
     """
     if not view.holes.any():
         return view
-    most = WIDEST * camera.focal * max(_pixel_angle(layer) for layer in panorama.layers)
+    most = WIDEST * camera.focal * min(map(pixel_angle, panorama.layers))
     return _filled(view, min(math.ceil(most), max(camera.width, camera.height)))
-
-
-def _pixel_angle(layer):
-    width, _ = layer.size
-    return 1.5 * math.pi / width if layer.mapping == CUBE_MAP else 2 * math.pi / width
 
 
 def _filled(view, reach):

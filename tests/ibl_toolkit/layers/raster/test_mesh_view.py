@@ -128,6 +128,21 @@ def test_layers_that_share_a_surface_show_no_cracks(mapping, view_of):
 
 
 @pytest.mark.parametrize("view_of", METHODS)
+def test_a_coarse_layer_elsewhere_closes_no_holes(view_of):
+    """Of a wall seen ahead a patch is missing; behind the eye is one pixel of a layer of 16 × 8."""
+    rays = directions("equirectangular", 512)
+    known = ~((rays[..., 0] > 0.9) & (np.abs(rays[..., 1:]) < 0.12).all(axis=2))
+    room = room_layer("equirectangular", 512, known)
+    behind = np.zeros((8, 16), bool)
+    behind[4, 0] = True
+    coarse = room_layer("equirectangular", 16, behind, "coarse")
+    camera = camera_at((0, 0, 0), (1.0, 0.0, 0.0))
+    alone = view_of(panorama_of(room), camera).holes
+    assert alone.sum() > 100
+    np.testing.assert_array_equal(view_of(panorama_of(room, coarse), camera).holes, alone)
+
+
+@pytest.mark.parametrize("view_of", METHODS)
 def test_what_was_never_seen_stays_a_hole(view_of):
     """Behind the card the room is not known: from beside a strip of it is a hole, and nothing else."""
     rays = directions("equirectangular", 512)
