@@ -30,13 +30,14 @@ def draw(document, path):
         }
     )
     figure, axes = plt.subplots(2, 2, figsize=(11, 7.6), layout="constrained")
-    kinds = list(document["kinds"])
+    compared = [row for row in document["rows"] if row["width"] == document["kinds_width"]]
+    kinds = list(dict.fromkeys(row["kind"] for row in compared))
     usual = [row for row in document["rows"] if row["width"] == document["usual"]]
     two = [row for row in usual if row["kind"] == kinds[0]]
     _times(axes[0, 0], [row for row in document["rows"] if row["kind"] == kinds[0] and row["view"] == "C1"])
     _distances(axes[0, 1], [row for row in two if row["view"].endswith(" m")])
     _views(axes[1, 0], [row for row in two if not row["view"].endswith(" m")])
-    _kinds(axes[1, 1], [row for row in document["rows"] if row["width"] == document["kinds_width"]], kinds)
+    _kinds(axes[1, 1], compared, kinds)
     for axis in axes.flat:
         axis.set_ylabel("PSNR [dB]")
         axis.grid(alpha=0.3)
