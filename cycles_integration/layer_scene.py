@@ -11,9 +11,6 @@ from mathutils import Matrix
 from . import capture, view_layers
 from .place import is_here
 
-MOST_CROSSED = 1024
-"""Transparent surfaces that a ray may cross."""
-
 
 def frame_of(scene: bpy.types.Scene, origin: tuple[float, float, float] | None = None) -> Matrix:
     """The frame (4, 4) world_from_panorama of a scene's layers.
@@ -88,7 +85,9 @@ def _set_up_render(copied):
     render.pixel_aspect_x = render.pixel_aspect_y = 1
     render.use_border = render.use_multiview = render.use_motion_blur = render.use_freestyle = False
     render.use_compositing = render.use_sequencer = render.film_transparent = False
+    render.use_persistent_data = False  # rays would begin where those of the surface before did
     cycles = copied.cycles
+    cycles.film_exposure = 1
     cycles.use_adaptive_sampling = False
     cycles.transparent_max_bounces += 1  # the camera's box is one
     cycles.texture_limit_render = "OFF"  # it would shrink the map of distances

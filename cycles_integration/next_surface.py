@@ -54,12 +54,15 @@ def geometry_only(layer: bpy.types.ViewLayer, start: RayStart, *, with_inside: b
 
     with_inside: these show instead how far their tangent plane is from the rays' origin, see `to_plane`.
     """
-    own = layer.material_override
+    own, cycles = layer.material_override, layer.id_data.cycles
+    clamps = cycles.sample_clamp_direct, cycles.sample_clamp_indirect
     material = new_material("Panorama Geometry of Layers", lambda tree: _shader(tree, start, with_inside))
     layer.material_override = material
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0  # distances are no light
     try:
         yield
     finally:
+        cycles.sample_clamp_direct, cycles.sample_clamp_indirect = clamps
         layer.material_override = own
         bpy.data.materials.remove(material)
 

@@ -138,6 +138,38 @@ def test_the_far_side_of_a_solid_that_a_view_sees_is_in_a_layer_as_it_is_lit_out
     assert ball.visible_camera
 
 
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {},
+        {"use_persistent_data": True},
+        {"film_exposure": 4.0},
+        {"film_exposure": 0.25},
+        {"sample_clamp_direct": 0.1, "sample_clamp_indirect": 0.1},
+    ],
+)
+def test_settings_of_the_artist_s_renders_leave_geometry_and_light_as_they_are(fresh_blend, settings):
+    scene = fresh_blend.context.scene
+    scene.render.engine = "CYCLES"
+    glow = small.material(EMISSION, Color=(0.05, 0.05, 0.05, 1))
+    add_box(scene, np.array([[-4.0] * 3, [4.0] * 3]), glow, inward=True)
+    small.add_ball(scene, glow, 0.8, Vector(ORIGIN) + Vector((2, 0, 0)))
+    for name, value in settings.items():
+        setattr(scene.render if hasattr(scene.render, name) else scene.cycles, name, value)
+    options = LayerCapture(WIDTH, samples=1, most=3)
+    layers = {layer.name: layer for layer in capture_surfaces(scene, LEVEL, 0.5, options).layers}
+    assert {name: np.count_nonzero(layer.mask) for name, layer in layers.items()} == {
+        "surface 1": WIDTH * WIDTH // 2,
+        "back of surface 1": 8,
+        "surface 2": 52,
+    }
+    wall = crossings(np.array([[-4.0] * 3, [4.0] * 3]), 0, DIRECTIONS)[1]
+    behind = layers["surface 2"]
+    np.testing.assert_allclose(behind.depth[behind.mask], wall[behind.mask], atol=METRES)
+    for layer in layers.values():
+        np.testing.assert_allclose(layer.radiance[layer.mask], 0.05, rtol=1e-3)
+
+
 def test_open_surfaces_are_seen_from_behind(scene):
     for distance in (1.0, 2.0):
         place = Vector(ORIGIN) + Vector((distance, 0, 0))
