@@ -23,12 +23,14 @@ class LayersReport:
 
     jumps: by layer name, the pairs of neighbouring pixels of its domain between which depth jumps.
     uncovered: share of the sphere that no layer's domain covers, 0 to 1. first_uncovered: a unit direction
-    (3,) there, panorama frame, or None.
+    (3,) there, panorama frame, or None. within: share of the sphere on which something is nearer than the
+    panorama's radius.
     """
 
     jumps: dict[str, int]
     uncovered: float
     first_uncovered: np.ndarray | None
+    within: float = 0.0
 
     @property
     def sound(self) -> bool:
@@ -50,6 +52,11 @@ class LayersReport:
                 f"{100 * self.uncovered:.3g} % of the sphere are in no layer's domain, must be none: the "
                 f"first at direction ({where})"
             )
+        if self.within:
+            lines.append(
+                f"{100 * self.within:.3g} % of the sphere show what is nearer than the radius: views from "
+                "beside it or behind will have holes"
+            )
         return tuple(lines)
 
 
@@ -67,8 +74,11 @@ def check_layers(panorama: LayeredPanorama, tolerance_px: float = TOLERANCE_PX) 
     ({'part': 0}, 0.375)
     """
     jumps = {layer.name: _jumps(layer, panorama.radius, tolerance_px) for layer in panorama.layers}
-    uncovered, first = _uncovered(panorama.layers)
-    return LayersReport(jumps, uncovered, first)
+    grid = max((grid_of(layer) for layer in panorama.layers), key=lambda grid: grid.size)
+    left = ~_looked_up(grid, panorama.layers, lambda layer: layer.mask)
+    within = _looked_up(grid, panorama.layers, lambda layer: layer.mask & (layer.depth < panorama.radius))
+    first = grid.directions[np.argmax(left)] if left.any() else None
+    return LayersReport(jumps, _share(grid, left), first, _share(grid, within))
 
 
 def _jumps(layer, radius, tolerance_px):
@@ -78,23 +88,28 @@ def _jumps(layer, radius, tolerance_px):
     return int(np.count_nonzero(pixel < other))
 
 
-def _uncovered(layers):
-    grid = max((grid_of(layer) for layer in layers), key=lambda grid: grid.size)
-    left = np.ones(grid.size, dtype=bool)
+def _looked_up(grid, layers, pixels_of):
+    """Whether each pixel (size,) of a grid is, in any of the layers, one of `pixels_of(layer)` (H, W)."""
+    found = np.zeros(grid.size, dtype=bool)
     for layer in layers:
         own = grid_of(layer)
-        mask = own.flat(layer.mask)
+        mask = own.flat(pixels_of(layer))
         if (own.mapping, own.size) == (grid.mapping, grid.size):
-            left &= ~mask
+            found |= mask
             continue
-        pixels = np.flatnonzero(left)
+        pixels = np.flatnonzero(~found) if mask.any() else ()
         for start in range(0, len(pixels), _BLOCK):
             block = pixels[start : start + _BLOCK]
-            left[block] = ~mask[own.at(grid.directions[block])]
-    if not left.any():
-        return 0.0, None
+            found[block] = mask[own.at(grid.directions[block])]
+    return found
+
+
+def _share(grid, pixels):
+    """What share of the sphere pixels (size,) cover."""
+    if not pixels.any():
+        return 0.0
     angles = _solid_angles(grid)
-    return float(angles[left].sum() / angles.sum()), grid.directions[np.argmax(left)]
+    return float(angles[pixels].sum() / angles.sum())
 
 
 def _solid_angles(grid: PixelGrid):

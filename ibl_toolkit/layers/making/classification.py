@@ -95,7 +95,8 @@ def flattened(layer: Layer, radius: float, tolerance_px: float = TOLERANCE_PX) -
 
     Part by part, as the domain hangs together without a jump: where distances differ by no more than
     2 · tolerance of parallax at `radius` [m] they become the one in their middle, so that nothing shifts by
-    more than the tolerance; else, where 1/depth is as near to a plane as that, it becomes the plane.
+    more than the tolerance; else, where 1/depth is as near to a plane as that, it becomes the plane. A part
+    that comes nearer than the radius stays, for views may be as near to it as they like.
     """
     grid = grid_of(layer)
     inside = grid.flat(layer.mask)
@@ -105,7 +106,8 @@ def flattened(layer: Layer, radius: float, tolerance_px: float = TOLERANCE_PX) -
     low, high = np.full(count, np.inf), np.zeros(count)
     np.minimum.at(low, labels[inside], near[inside])
     np.maximum.at(high, labels[inside], near[inside])
-    thin = parallax(radius, high, low) <= 2 * allowed
+    beyond = radius * high < 1
+    thin = beyond & (parallax(radius, high, low) <= 2 * allowed)
     planes, _ = region_planes(
         grid, np.where(inside, near, 0), count + 1, np.where(inside, labels, count), radius
     )
@@ -113,7 +115,7 @@ def flattened(layer: Layer, radius: float, tolerance_px: float = TOLERANCE_PX) -
     on_plane = np.einsum("nk,nk->n", planes[chosen], grid.directions[inside])
     off = np.zeros(count)
     np.maximum.at(off, chosen, np.where(on_plane > 0, np.abs(on_plane - near[inside]), np.inf))
-    level = off * radius <= allowed
+    level = beyond & (off * radius <= allowed)
     result = np.where(level[chosen], on_plane, near[inside])
     result = np.where(thin[chosen], (low + high)[chosen] / 2, result)
     depth = np.full(grid.size, np.nan, np.float32)

@@ -21,13 +21,15 @@ def parallax(radius: float, nearer: np.ndarray, farther: np.ndarray) -> np.ndarr
     nearer, farther: 1/depth [1/m] of the edge and of what is behind it. A line of sight past the edge that
     touches the ball of the radius makes asin(r/d) with the ray to a point of it at distance d, so
 
-        width = asin(r/d_near) − asin(r/d_far),    asin(r/d) = π/2 where d < r.
+        width = asin(r/d_near) − asin(r/d_far).
+
+    Where the edge is nearer than r, an eye within r may go round it and see all that is behind: π.
 
     >>> float(np.degrees(parallax(0.5, np.array(1.0), np.array(0.0))).round(6))
     30.0
     """
     one, other = (np.arcsin(np.minimum(radius * near, 1)) for near in (nearer, farther))
-    return np.maximum(one - other, 0)
+    return np.where((radius * nearer >= 1) & (nearer > farther), np.pi, np.maximum(one - other, 0))
 
 
 def regions(grid: PixelGrid, near, jumps, hollows, radius: float) -> tuple[int, np.ndarray]:

@@ -9,7 +9,8 @@ from P's own direction is s(t), with
 To see P the line has to come out from behind the surface, which it can only where the surface ends: at a
 discontinuity whose nearer side has depth a <= s(t). So P is hidden from everywhere in the radius unless there
 is one at an angle t <= asin(r / a) - asin(r / b), and behind all that lies between the line is farther than
-the surface. `uncovered_reach` is the largest asin(r / b) for which that holds.
+the surface. `uncovered_reach` is the largest asin(r / b) for which that holds. Where a < r, an eye may go
+round the surface and see all that is behind: there it begins with more than any asin and any way take.
 
 Source: own; the thesis (6.3.2) stores every surface of a ray.
 """
@@ -29,11 +30,14 @@ _CHAMFER = 0.92
 """Ways over a grid are up to 8 % longer than arcs: shortened, so that rather too much is kept."""
 _STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 _MOST_ROUNDS = 12
+_ROUND_IT = np.float32(1.5 * np.pi)
+"""A reach [rad] that is enough for everything: π/2 for what is within the radius, and π for the way."""
 _NEAREST_SHARE = 0.01
 
 
 def uncovered_reach(depth: np.ndarray, radius: float, behind: np.ndarray | None = None) -> np.ndarray:
-    """For each ray the largest asin(radius / b) [rad] of what can be seen behind a surface; -inf for nothing.
+    """For each ray the largest asin(radius / b) [rad] of what can be seen behind a surface; -inf for nothing,
+    over π/2 for everything.
 
     depth: (H, W) [m] of an equirectangular map, +inf at infinity, without NaN. radius: [m]. -> (H, W),
     float32.
@@ -54,7 +58,7 @@ def uncovered_reach(depth: np.ndarray, radius: float, behind: np.ndarray | None 
     if radius == 0:
         return np.full(depth.shape, -np.inf, np.float32)
     near = nearness(depth)
-    most = np.arcsin(np.minimum(radius * near, 1))
+    most = np.where(radius * near < 1, np.arcsin(np.minimum(radius * near, 1)), _ROUND_IT)
     next_near = np.full_like(near, -np.inf) if behind is None else nearness(behind)
     least = np.arcsin(np.clip(radius * next_near, -1, 1)) - MARGIN_PX * np.pi / height
     away = _barriers(near, next_near, radius)

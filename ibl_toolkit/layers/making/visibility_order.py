@@ -16,6 +16,9 @@ from .grid import PixelGrid, grid_of
 
 _WIDTH = 512  # of the map on which layers are compared
 _MARGIN_PX = 2.0
+_APART = 1.1
+"""Ratio of distances from which on of two surfaces within the radius one is before the other."""
+_NOTHING, _RIM = 9.0, np.pi / 2
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,9 @@ def visibility_order(panorama: LayeredPanorama) -> VisibilityOrder:
 
     Point x of layer A hides point y of B from somewhere within the radius r only if the angle between them
     is at most asin(r/d_x) − asin(r/d_y). (The line of sight that touches the ball is the widest.) Two layers
-    that meet, as floor and wall, do not hide each other.
+    that meet, as floor and wall, do not hide each other. Of two that are nearer than r, the one that is
+    nearer in a pixel by a tenth hides the other, as it does from the origin; from the far side, where an eye
+    within r may go, the other may hide it: that isn't looked at.
 
     >>> from ..panorama import Layer
     >>> far = Layer("far", "equirectangular", {"depth": np.full((16, 32), 4.0)})
@@ -52,21 +57,31 @@ def visibility_order(panorama: LayeredPanorama) -> VisibilityOrder:
     hides = {}
     for name, (nearest, _) in zip(names, extremes, strict=True):
         pixels = np.flatnonzero(nearest > -1)
-        reach, _ = flood(grid, pixels, pixels, nearest[pixels], everywhere)
+        reach, _ = flood(grid, pixels, pixels, np.minimum(nearest[pixels], _RIM), everywhere)
         hides[name] = tuple(
             other
             for other, (_, farthest) in zip(names, extremes, strict=True)
-            if other != name and (reach > farthest + margin).any()
+            if other != name and ((reach > farthest + margin).any() or _is_before(nearest, farthest))
         )
     return VisibilityOrder(hides, *_ordered(hides))
 
 
+def _is_before(nearest, farthest):
+    """Whether in some pixel both are within the radius, and the one before the other."""
+    within = (farthest > _RIM) & (farthest < _NOTHING)
+    return (within & (nearest > farthest + np.log(_APART))).any()
+
+
 def _angles(grid, layer, radius):
-    """asin(r/d) (size,) of the nearest point of a layer in each pixel, and of the farthest; none: -1, 9."""
+    """asin(r/d) (size,) of the nearest point of a layer in each pixel, and of the farthest; none: -1, 9.
+
+    Within the radius π/2 + log(r/d).
+    """
     own = grid_of(layer)
     inside = own.flat(layer.mask)
-    angle = np.arcsin(np.minimum(radius * own.flat(nearness(layer.depth))[inside], 1))
-    nearest, farthest = np.full(grid.size, -1, np.float32), np.full(grid.size, 9, np.float32)
+    ratio = radius * own.flat(nearness(layer.depth))[inside]
+    angle = np.arcsin(np.minimum(ratio, 1)) + np.log(np.clip(ratio, 1, np.exp(_NOTHING - 2)))
+    nearest, farthest = np.full(grid.size, -1, np.float32), np.full(grid.size, _NOTHING, np.float32)
     pixel = grid.at(own.directions[inside])
     np.maximum.at(nearest, pixel, angle)
     np.minimum.at(farthest, pixel, angle)
@@ -74,7 +89,7 @@ def _angles(grid, layer, radius):
         there = own.at(grid.directions)
         whole = np.full(own.size, np.nan, np.float32)
         whole[inside] = angle
-        nearest, farthest = (np.where(inside[there], whole[there], none) for none in (-1, 9))
+        nearest, farthest = (np.where(inside[there], whole[there], none) for none in (-1, _NOTHING))
     return nearest.astype(np.float32), farthest.astype(np.float32)
 
 

@@ -50,6 +50,15 @@ def test_what_is_not_covered():
     assert "50 % of the sphere are in no layer's domain" in report.warnings[0]
 
 
+def test_what_is_within_the_radius():
+    depth, near = np.full((16, 32), 4.0), np.full((8, 16), np.nan)
+    near[:, :4] = 0.4
+    report = check_layers(panorama(layer(depth), layer(near, "post")))
+    np.testing.assert_allclose(report.within, 0.25, rtol=1e-6)
+    assert "25 % of the sphere show what is nearer than the radius" in report.warnings[-1]
+    assert check_layers(panorama(layer(depth), layer(near, "post"), radius=0.3)).within == 0
+
+
 def test_layers_of_two_mappings_cover_together():
     upper = np.full((16, 32), 4.0)
     upper[9:] = np.nan

@@ -110,6 +110,17 @@ def test_a_thin_range_becomes_one_distance():
     np.testing.assert_allclose(flattened(layer(rough), 0.5).depth, rough, rtol=1e-6)
 
 
+def test_what_views_may_touch_is_not_made_flat():
+    """Bumps of 1 cm and of 1 m from within 4 m, a rough plane at 0.5 m from within 1 m."""
+    rng = np.random.default_rng(4)
+    for middle, size, radius in ((3.0, 0.01, 4.0), (2.5, 1.0, 4.0)):
+        rough = middle + size * rng.random((64, 128))
+        np.testing.assert_allclose(flattened(layer(rough), radius).depth, rough, rtol=1e-6)
+    down = -directions("equirectangular", 128)[..., 2]
+    floor = np.where(down > 0.4, 0.5 / np.maximum(down, 0.4), np.nan) * (1 + 0.002 * rng.random(down.shape))
+    np.testing.assert_allclose(flattened(layer(floor), 1.0).depth, floor, rtol=1e-6)
+
+
 def test_a_rough_floor_becomes_a_plane_and_a_hill_stays():
     down = -directions("equirectangular", 256)[..., 2]
     rng = np.random.default_rng(4)

@@ -124,7 +124,13 @@ def test_parallax_against_lines_of_sight():
     point = eye + (-along + np.sqrt(along**2 - radius**2 + wall**2))[:, None] * sight
     widest = np.abs(np.arctan2(point[:, 1], point[:, 0])).max()
     np.testing.assert_allclose(parallax(radius, np.array(1 / edge), np.array(1 / wall)), widest, rtol=1e-6)
-    assert parallax(radius, np.array(4.0), np.array(0.0)) == np.pi / 2
+    np.testing.assert_allclose(parallax(1.0, np.array(1 - 1e-9), np.array(0.0)), np.pi / 2, atol=1e-4)
+
+
+def test_an_eye_goes_round_an_edge_within_the_radius():
+    """Also where both surfaces are within it; nothing hides what is nearer, or itself."""
+    nearer, farther = np.array([4.0, 4.0, 4.0, 3.0]), np.array([0.0, 3.0, 4.0, 4.0])
+    np.testing.assert_array_equal(parallax(0.5, nearer, farther), [np.pi, np.pi, 0, 0])
 
 
 @pytest.mark.parametrize("mapping", BOTH)

@@ -37,6 +37,25 @@ def test_behind_a_card_a_strip_as_wide_as_the_parallax_can_be_seen(turn, tilt):
     assert not seen[inside & (edge > 1.1 * strip + 3 * pixel)].any()
 
 
+@pytest.mark.parametrize("radius", [2.5, 7.0])
+def test_behind_a_card_within_the_radius_all_can_be_seen(radius):
+    """Whether the wall is within the radius, too, or not: an eye goes round the card."""
+    front, behind = np.where(card(), CARD, WALL), np.where(card(), WALL, np.inf)
+    seen = can_be_seen(uncovered_reach(front, radius, behind), behind, radius)
+    np.testing.assert_array_equal(seen, card())
+
+
+def test_a_room_within_the_radius_is_not_opened_by_a_box_on_its_floor():
+    x, _, z = np.moveaxis(DIRECTIONS, -1, 0)
+    room = 3 / np.abs(DIRECTIONS).max(axis=-1)
+    with np.errstate(divide="ignore"):
+        is_box = card() & (2 * z / x > -3)
+    front, behind = np.where(is_box, 2 / x, room), np.where(is_box, room, np.inf)
+    seen = can_be_seen(uncovered_reach(front, 4.0, behind), behind, 4.0)
+    assert not (seen & ~is_box).any()
+    assert seen[is_box].mean() > 0.9
+
+
 def test_far_things_behind_are_seen_deeper_in():
     front = np.where(card(), CARD, WALL)
     reach = uncovered_reach(front, RADIUS)

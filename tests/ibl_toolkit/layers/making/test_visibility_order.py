@@ -53,6 +53,17 @@ def test_two_that_hide_each_other_are_a_cycle():
     assert set(found.hides["one"]) == {"back", "other"}
 
 
+def test_within_the_radius_the_nearer_is_in_front():
+    rows = slice(60, 64)
+    found = order_of(
+        3.0,
+        far=screen(2, slice(80, 96), rows),
+        near=screen(1, slice(90, 94), rows),
+        touching=screen(1, slice(92, 96), rows),
+    )
+    assert found.hides == {"near": ("far",), "touching": ("far",), "far": ()}
+
+
 @pytest.mark.parametrize("mapping", BOTH)
 def test_sides_of_a_room_do_not_hide_each_other(mapping):
     room = box_layer(mapping, {"equirectangular": 256, "cube map": 192}[mapping])
