@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...images.png import linear_from_srgb
 from ..errors import LayersError
 
 _HEADER_BYTES = 1 << 16
@@ -77,6 +78,7 @@ def _header(data):
         if words[:1] == ["format"] and len(words) == 3 and words[1] in _FORMATS:
             order = _FORMATS[words[1]]
         elif words[:1] == ["element"] and len(words) == 3 and words[2].isdecimal():
+            _refuse_more_than(len(data), words)
             elements.append(_Element(words[1], int(words[2]), []))
         elif words[:1] == ["property"] and elements and _property(words) is not None:
             elements[-1].properties.append(_property(words))
@@ -85,6 +87,16 @@ def _header(data):
     if order == "":
         raise LayersError(f"its header has no format: must be one of {', '.join(_FORMATS)}")
     return order, elements, data.index(b"\n", end) + 1
+
+
+def _refuse_more_than(most, words):
+    """Each of an element's things takes a byte or more, in either kind of file; digits are counted first,
+    since Python reads no number of thousands of them."""
+    if len(words[2].lstrip("0")) > len(str(most)) or int(words[2]) > most:
+        raise LayersError(
+            f"its header tells of {words[2][:20]} of element '{words[1][:80]}', more than its {most} bytes "
+            "can hold"
+        )
 
 
 def _property(words):
@@ -153,8 +165,7 @@ def _colours(columns):
     channels = [columns[name] for name in ("red", "green", "blue")]
     kinds = {channel.dtype.kind + str(channel.dtype.itemsize) for channel in channels}
     if kinds == {"u1"}:
-        display = np.stack(channels, axis=1).astype(np.float32) / 255
-        return np.where(display <= 0.04045, display / 12.92, ((display + 0.055) / 1.055) ** 2.4)
+        return linear_from_srgb(np.stack(channels, axis=1).astype(np.float32) / 255)
     if kinds <= {"f4", "f8"}:
         return np.stack(channels, axis=1).astype(np.float32)
     raise LayersError("its colours are neither all uchar nor all float or double")

@@ -81,8 +81,16 @@ BINARY = header("binary_little_endian")
             "no line 'end_header' in the first 65536 bytes",
         ),
         (BINARY + rows("<")[:-1], "ends after 1 vertices, its header tells of 2"),
-        (header("binary_little_endian", count=10**15) + rows("<"), "must have 1 to"),
-        (header("binary_little_endian", count=10**8) + rows("<"), "ends after 2 vertices"),
+        (header("binary_little_endian", count=10**15) + rows("<"), "more than its .* bytes can hold"),
+        (header("binary_little_endian", count=20) + rows("<"), "ends after 2 vertices"),
+        *[
+            (
+                header(kind, before=f"element camera {count}\nproperty float x\n") + rows("<"),
+                "tells of 9+ of element 'camera', more than its .* bytes can hold",
+            )
+            for kind in ("binary_little_endian", "ascii")
+            for count in ("9" * 18, "9" * 30, "9" * 5000)
+        ],
         (header("ascii", count=3) + b"1 2 3 4 5 6\n" * 2, "has 12 numbers of vertices, .* 3 times 6"),
         (header("ascii", count=1) + b"1 2 3 4 five 6\n", "can't be read"),
         (header("ascii", count=0), "has 0 vertices"),
