@@ -66,7 +66,8 @@ def write_layers(panorama: LayeredPanorama, folder, *, levels=1, ldr=False, expo
         write_xml(folder / NAME, PanoramaFile(layers, *place))
         complete = True
     finally:
-        for name in before if complete else written:
+        is_new = complete or not _files_named_by(folder / NAME).isdisjoint(written)
+        for name in before if is_new else written:
             (folder / name).unlink(missing_ok=True)
     return folder / NAME
 
@@ -195,12 +196,14 @@ def _files_named_by(path):
 def _stems(panorama, folder):
     """What each layer's files begin with: its number and, in plain letters, its name.
 
-    All get one more number if that is what it takes not to meet a file that is there.
+    All get one more number if that is what it takes not to meet a file that is there, whatever the case of
+    its letters: to some file systems that is no difference.
     """
     plain = [re.sub(r"[^A-Za-z0-9-]+", "_", layer.name)[:60].strip("_") for layer in panorama.layers]
     stems = [f"{k}_{name}".strip("_") for k, name in enumerate(plain)]
-    taken = [path.name for path in folder.iterdir()]
+    taken = [path.name.lower() for path in folder.iterdir()]
     for number in itertools.count(1):
         found = stems if number == 1 else [f"{stem}-{number}" for stem in stems]
-        if not any(name.startswith((f"{stem}_", f"{stem}.")) for stem in found for name in taken):
+        ours = tuple(f"{stem.lower()}{end}" for stem in found for end in "_.")
+        if not any(name.startswith(ours) for name in taken):
             return found

@@ -179,6 +179,32 @@ def test_an_interrupted_write_leaves_the_old(tmp_path, monkeypatch, at):
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
+def test_an_interrupt_after_the_last_step_leaves_the_new(tmp_path, monkeypatch):
+    write_layers(example(), tmp_path)
+    before = {path.name for path in tmp_path.iterdir()} - {"panorama.xml"}
+    write_xml = storage.write_xml
+
+    def interrupted(*arguments):
+        write_xml(*arguments)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(storage, "write_xml", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_layers(example(), tmp_path)
+    assert len(read_layers(tmp_path).layers) == 3
+    assert before.isdisjoint(path.name for path in tmp_path.iterdir())
+
+
+def test_names_that_differ_by_case_alone_are_one_to_some_file_systems(tmp_path):
+    depth = {"depth": np.full((4, 8), 2.0, np.float32)}
+    names = []
+    for name in ("Sofa", "sofa"):
+        layer = Layer(name, "equirectangular", depth)
+        write_layers(LayeredPanorama((layer,), ROTATION, np.zeros(3), 0.5), tmp_path)
+        names.append({path.name.lower() for path in tmp_path.iterdir()} - {"panorama.xml"})
+    assert names[0].isdisjoint(names[1])
+
+
 def test_impossible_values_are_not_written(tmp_path):
     panorama = example()
     panorama.layers[0].radiance[2, 5] = np.nan
