@@ -2,8 +2,6 @@
 
 from contextlib import ExitStack, contextmanager
 
-import numpy as np
-
 from ..ibl_toolkit.images import read_rgbd
 from ..ibl_toolkit.layers.making.from_points import layers_from_points
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
@@ -27,13 +25,11 @@ def from_points(path, options, progress):
     with progress.step("reading"):
         cloud = read_ply(path)
     origin = options.origin or (0.0, 0.0, 0.0)
-    radius = options.radius
-    if radius is None:  # as `usual_radius`, of points in place of directions
-        distances = np.linalg.norm(cloud.points - origin, axis=1)
-        radius = float(np.nanpercentile(distances, 1)) / 2
     width = options.width or WIDTH
     with progress.step("layers"), naming(path):
-        return layers_from_points(cloud.points, cloud.colours, origin, width, radius, count=options.layers)
+        return layers_from_points(
+            cloud.points, cloud.colours, origin, width, options.radius, count=options.layers
+        )
 
 
 def from_set(path, options, progress):

@@ -1,12 +1,9 @@
 """`panorama layers INPUT -o FOLDER`: a panorama in layers, of a picture, points, a set or a scene."""
 
-import os
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from ..ibl_toolkit.images.atomic import new_folder
-from ..ibl_toolkit.layers.files.storage import write_layers
-from ..ibl_toolkit.layers.files.xml_file import NAME
+from ..ibl_toolkit.layers.files.folder import refuse_other_folder, write_folder
 from ..ibl_toolkit.layers.making.check import check_layers
 from ..ibl_toolkit.layers.making.uncovered import share_of_sphere
 from .layer_makers import SAMPLES, WIDTH, from_points, from_rgbd, from_scene, from_set
@@ -98,10 +95,13 @@ def make_layers(input_path, output, options=None, progress=None):
     if make is None:
         raise ValueError(f"{path}: must be {INPUT}")
     _refuse_options(path, options)
-    _refuse_folder(output)
+    try:
+        refuse_other_folder(output)
+    except ValueError as error:
+        raise ValueError(f"-o {error}") from None
     panorama = make(path, options, progress)
     with progress.step("writing"):
-        _write(panorama, output, options)
+        write_folder(panorama, output, levels=options.levels, ldr=options.ldr)
     return _result(panorama, progress)
 
 
@@ -114,26 +114,6 @@ def _refuse_options(path, options):
             raise ValueError(
                 f"{option}: does nothing for {path}{' with --collection' * (idle == OF_SURFACES)}"
             )
-
-
-def _refuse_folder(output):
-    """Raise ValueError unless a panorama can be written at `output` without harm to other files."""
-    if not output.absolute().parent.is_dir():
-        raise ValueError(f"-o {output}: folder {output.parent} does not exist")
-    if output.exists() and not output.is_dir():
-        raise ValueError(f"-o {output}: is a file; must be a folder, new or with a panorama in layers")
-    if output.is_dir() and any(output.iterdir()) and not (output / NAME).is_file():
-        raise ValueError(f"-o {output}: has other files in it and no {NAME}; name another folder")
-    if not os.access(output if output.is_dir() else output.absolute().parent, os.W_OK):
-        raise ValueError(f"-o {output}: cannot be written")
-
-
-def _write(panorama, output, options):
-    if output.is_dir():
-        write_layers(panorama, output, levels=options.levels, ldr=options.ldr)
-        return
-    with new_folder(output) as folder:
-        write_layers(panorama, folder, levels=options.levels, ldr=options.ldr)
 
 
 def _result(panorama, progress):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
@@ -13,10 +15,11 @@ from ..cycles_integration.pieces import PIECE
 from ..cycles_integration.place_layers import capture_place
 from ..cycles_integration.rgbd_place import NAME as DEPTH
 from ..ibl_toolkit.images import is_rgbd, read_rgbd
-from ..ibl_toolkit.images.atomic import new_folder, refuse_unwritable
+from ..ibl_toolkit.images.atomic import refuse_unwritable
 from ..ibl_toolkit.layers.export.writing import export_layers
-from ..ibl_toolkit.layers.files.storage import read_layers, write_layers
-from ..ibl_toolkit.layers.files.xml_file import NAME
+from ..ibl_toolkit.layers.files.folder import refuse_other_folder, write_folder
+from ..ibl_toolkit.layers.files.storage import read_layers
+from ..ibl_toolkit.layers.making.check import check_layers
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
 from . import progress
 from .layer_properties import folder_of, look_into_folder
@@ -31,29 +34,30 @@ FORMATS = (
 
 
 def make_layers(scene, tell, folder, radius, width, most):
-    """The long part of Make Layers: writes them -> how many there are."""
-    panorama = _captured(scene, tell, radius or None, width, most)
+    """The long part of Make Layers: writes them -> how many there are, and a line for each thing amiss."""
+    panorama, continuous = _captured(scene, tell, radius or None, width, most)
     tell("writing")
-    if folder.is_dir():
-        write_layers(panorama, folder)
-    else:
-        with new_folder(folder) as temporary:
-            write_layers(panorama, temporary)
-    return len(panorama.layers)
+    write_folder(panorama, folder)
+    tell("checking")
+    report = check_layers(panorama)
+    return len(panorama.layers), (report if continuous else replace(report, jumps={})).warnings
 
 
 def _captured(scene, tell, radius, width, most):
-    """Surfaces as they are rendered: meshes bridge their jumps, where split layers would show slits."""
+    """A panorama, and whether its layers should be continuous in depth.
+
+    Surfaces are kept as they are rendered: meshes bridge their jumps, where split layers would show slits.
+    """
     path = bpy.path.abspath(scene.panorama_set.image_path)
     if not path:
         cycles = scene.cycles
         options = LayerCapture(width, cycles.samples, most, cycles.use_denoising, cycles.seed)
-        return capture_surfaces(scene, frame_of(scene), radius, options, tell)
+        return capture_surfaces(scene, frame_of(scene), radius, options, tell), False
     if [thing.get(PIECE) for thing in roles.real_objects(scene)] != [DEPTH] or not is_rgbd(path):
         options = LayerCapture(width=width, samples=1, most=most)
-        return capture_place(scene, radius, options, tell)
+        return capture_place(scene, radius, options, tell), False
     tell("layers")  # of the file's own depth, which that one surface follows only so far
-    return layers_of(read_rgbd(path), radius, most)
+    return layers_of(read_rgbd(path), radius, most), True
 
 
 def making_missing(scene) -> str:
@@ -87,7 +91,7 @@ class PANORAMA_OT_make_layers(LongWork, bpy.types.Operator):
         """Folder and sizes. Raises ValueError where the folder has other files in it."""
         layers = context.scene.panorama_layers
         folder = folder_of(layers)
-        _refuse_other_folder(folder)
+        refuse_other_folder(folder)
         return {
             "folder": folder,
             "radius": layers.radius,
@@ -97,8 +101,11 @@ class PANORAMA_OT_make_layers(LongWork, bpy.types.Operator):
 
     def apply(self, scene, found):
         """Note what the folder holds now."""
+        count, warnings = found
         look_into_folder(scene.panorama_layers)
-        return f"{found} layer{'s' if found > 1 else ''} in {scene.panorama_layers.folder}"
+        for warning in warnings:
+            self.report({"WARNING"}, warning)
+        return f"{count} layer{'s' if count > 1 else ''} in {scene.panorama_layers.folder}"
 
 
 class PANORAMA_OT_open_layers(Reporting, bpy.types.Operator):
@@ -173,15 +180,6 @@ def _scene_like(scene):
     other.view_settings.view_transform = scene.view_settings.view_transform
     other.panorama_layers.folder = scene.panorama_layers.folder
     return other
-
-
-def _refuse_other_folder(folder):
-    if folder.is_file():
-        raise ValueError(f"{folder}: is a file, must be a folder")
-    if not folder.parent.is_dir():
-        raise ValueError(f"{folder}: the folder {folder.parent} does not exist")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / NAME).is_file():
-        raise ValueError(f"{folder}: has other files in it and no {NAME}: choose another folder")
 
 
 classes = (PANORAMA_OT_make_layers, PANORAMA_OT_open_layers, PANORAMA_OT_export_layers)

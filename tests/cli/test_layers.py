@@ -190,7 +190,7 @@ def test_a_set_is_rebuilt_and_shows_its_photograph(fresh_blend, room, panorama):
     ("arguments", "words"),
     [
         (["map.png", "-o", "new"], "map.png: must be RGB-D panorama"),
-        (["map.exr", "-o", "none/new"], "folder none does not exist"),
+        (["map.exr", "-o", "none/new"], "-o none/new: the folder none does not exist"),
         (["map.exr", "-o", "map.exr"], "-o map.exr: is a file"),
         (["map.exr", "-o", "."], "has other files in it and no panorama.xml"),
         (["map.exr", "-o", "new", "--samples", "3"], "--samples: does nothing for map.exr"),

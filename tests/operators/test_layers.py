@@ -1,5 +1,7 @@
 """Layers of a place: made into a folder, opened as objects, written to files; and what is refused."""
 
+import os
+
 import numpy as np
 import panoramas
 import pytest
@@ -71,6 +73,28 @@ def test_of_an_rgbd_panorama_the_file_s_own_depth_is_taken(fresh_blend, tmp_path
     assert (np.abs(nearest - depth) < 0.01).mean() > 0.98
     np.testing.assert_allclose(panorama.world_from_panorama, ROTATION, atol=1e-6)
     assert panorama.radius > 0.4  # half of what is nearest, none being given
+
+
+def test_too_few_layers_are_warned_of(fresh_blend, tmp_path, capfd):
+    """Of an RGB-D panorama, whose layers should be continuous; not of surfaces, which meshes bridge."""
+    towards = equirectangular.pixel_directions(WIDTH, WIDTH // 2)
+    depth = np.where(towards[..., 0] > 0.9, 1, 3).astype(np.float32)
+    write_rgbd(tmp_path / "deep.exr", RGBD(radiance_in(towards), depth, ROTATION, 1.5))
+    fresh_blend.ops.panorama.load_rgbd(filepath=str(tmp_path / "deep.exr"))
+    layers = fresh_blend.context.scene.panorama_layers
+    layers.folder, layers.most = str(tmp_path / "layers"), 1
+    capfd.readouterr()
+    assert fresh_blend.ops.panorama.make_layers() == {"FINISHED"}
+    assert "layer 'background': depth jumps" in capfd.readouterr().out
+    layers.most = 4
+    fresh_blend.ops.panorama.make_layers()
+    assert "Warning" not in capfd.readouterr().out
+
+
+def test_jumps_of_surfaces_are_not_warned_of(fresh_blend, room, capfd):
+    capfd.readouterr()
+    assert fresh_blend.ops.panorama.make_layers() == {"FINISHED"}
+    assert "depth jumps" not in capfd.readouterr().out
 
 
 def test_without_a_panorama_the_scene_itself_is_captured(fresh_blend, tmp_path):
@@ -154,7 +178,7 @@ def test_buttons_say_why_not(fresh_blend, room, tmp_path):
     assert reason(fresh_blend, "make_layers") == "Calibrate first"
 
 
-def test_folders_that_are_no_place_for_layers_are_refused(fresh_blend, room, tmp_path):
+def test_folders_that_are_no_place_for_layers_are_refused(fresh_blend, room, tmp_path, monkeypatch):
     def refuses(folder, message):
         room.panorama_layers.folder = str(folder)
         with pytest.raises(RuntimeError, match=message):
@@ -163,6 +187,8 @@ def test_folders_that_are_no_place_for_layers_are_refused(fresh_blend, room, tmp
     refuses(tmp_path, "has other files in it and no panorama.xml: choose another folder")
     refuses(tmp_path / "map.exr", "is a file, must be a folder")
     refuses(tmp_path / "no" / "layers", "the folder .*no does not exist")
+    monkeypatch.setattr(os, "access", lambda path, mode: False)
+    refuses(tmp_path / "layers", "cannot be written")
     refuses("//layers", "is relative to the .blend: save that first")
     assert [path.name for path in tmp_path.iterdir()] == ["map.exr"]
 

@@ -25,7 +25,7 @@ def layers_from_points(
     colours: np.ndarray,
     origin,
     width: int,
-    radius: float,
+    radius: float | None = None,
     *,
     world_from_panorama=None,
     mapping: str = EQUIRECTANGULAR,
@@ -35,10 +35,11 @@ def layers_from_points(
 ) -> LayeredPanorama:
     """Layers of points (n, 3) [m] with colours (n, 3), linear, seen from `origin` (3,), all in the world.
 
-    width: of the map [px]. radius: [m] round the origin within which views will be. splat_px: width of a
-    point [px], None to find it from their density. hole_px: holes no wider are closed, continuing what is
-    round them; pixels farther than half of it from any known one stay outside of all domains: `check_layers`
-    says how much of the sphere. count: as for `layers_from_rgbd`.
+    width: of the map [px]. radius: [m] round the origin within which views will be; None: half of what
+    is nearest, but for a hundredth of the points. splat_px: width of a point [px], None to find it from their
+    density. hole_px: holes no wider are closed, continuing what is round them; pixels farther than half of it
+    from any known one stay outside of all domains: `check_layers` says how much of the sphere. count: as for
+    `layers_from_rgbd`.
 
     Each pixel's first surface is split as an RGB-D panorama is; the last one behind it goes to the
     background. Surfaces between them are left out. Points that aren't finite are passed over, as scanners
@@ -49,9 +50,11 @@ def layers_from_points(
     LayeredPanorama refuses.
     """
     world_from_panorama = np.eye(3) if world_from_panorama is None else np.asarray(world_from_panorama)
-    refuse_other_place(world_from_panorama, origin, radius)
+    refuse_other_place(world_from_panorama, origin, 0.0 if radius is None else radius)
     grid = PixelGrid(mapping, width, width // 2 if mapping == EQUIRECTANGULAR else width * 2 // 3)
     offsets, colours = _usable(points, colours, origin, world_from_panorama)
+    if radius is None:  # as `usual_radius`, of points in place of directions
+        radius = float(np.percentile(np.linalg.norm(offsets, axis=1), 1) / 2)
     if splat_px is None:
         splat_px = splat_width(grid, offsets / np.linalg.norm(offsets, axis=1, keepdims=True))
     for name, value in (("splat_px", splat_px), ("hole_px", hole_px)):

@@ -108,7 +108,8 @@ def test_sparse_points_leave_no_gaps_at_the_poles(mapping):
 
 def test_unusable_points_are_passed_over():
     points = np.array([[np.nan, 0, 0], [0, 0, 0], [2.0, 0, 0], [np.inf, 0, 0]])
-    panorama = layers_from_points(points, np.ones((4, 3)), (0, 0, 0), 16, 0.1, hole_px=100)
+    panorama = layers_from_points(points, np.ones((4, 3)), (0, 0, 0), 16, hole_px=100)
+    assert panorama.radius == 1.0  # half of what is nearest
     np.testing.assert_allclose(panorama.layers[0].depth[4, 8], 2, rtol=0.05)
 
 
