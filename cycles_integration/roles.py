@@ -21,6 +21,9 @@ ROLES = (
     ),
 )
 
+watchers: list = []
+"""Functions of an object, called when its role was changed; an update of the scene does not tell it."""
+
 
 def real_objects(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return the scene's meshes that stand for real surfaces; the lamps on them are left out."""
@@ -52,6 +55,11 @@ def is_editable(thing: bpy.types.ID) -> bool:
     return thing.library is None and not (override and override.is_system_override)
 
 
+def _role_changed(thing, context):
+    for watcher in watchers:
+        watcher(thing)
+
+
 def register():
     """Give every object its role and, for a glossy support, its reflection."""
     bpy.types.Object.panorama_role = bpy.props.EnumProperty(
@@ -59,6 +67,7 @@ def register():
         description="What this object is to the composite",
         items=ROLES,
         default=SYNTHETIC,
+        update=_role_changed,
         override={"LIBRARY_OVERRIDABLE"},
     )
     bpy.types.Object.panorama_reflectivity = bpy.props.FloatProperty(

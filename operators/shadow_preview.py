@@ -12,6 +12,7 @@ from ..cycles_integration.shadow_preview import (
     discard,
     has_surface,
     is_there,
+    light_of,
     put_on,
     put_on_picture,
     renew,
@@ -92,8 +93,8 @@ class PANORAMA_OT_renew_shadow_preview(Reporting, bpy.types.Operator):
 
 
 class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
-    """Take the preview out of all materials and the compositor, with its map. They are as before, and so is
-    the light"""
+    """Take the preview out of all materials and the compositor, with its map. What they show is as before,
+    and so is the light. Materials and a compositor that had to be added stay, and so do the passes"""
 
     bl_idname = "panorama.remove_shadow_preview"
     bl_label = "Remove Shadow Preview"
@@ -113,8 +114,8 @@ class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
 
 def light_for(context) -> bpy.types.Object | None:
     """The chosen light, else a selected one, else the scene's first sun, else its first light."""
-    chosen = context.scene.panorama_shadow_preview.light
-    if chosen is not None and chosen.name in context.scene.objects:
+    chosen = light_of(context.scene.panorama_shadow_preview)
+    if chosen is not None:
         return chosen
     lights = [thing for thing in context.scene.objects if thing.type == "LIGHT" and thing.visible_get()]
     return min(lights, key=lambda one: (not one.select_get(), one.data.type != "SUN"), default=None)
@@ -155,7 +156,7 @@ def _none_yet(scene):
     preview = scene.panorama_shadow_preview
     if not is_there(preview):
         return "There is no preview"
-    return "Choose a light" if preview.light is None else ""
+    return "Choose a light" if light_of(preview) is None else ""
 
 
 def _receivers(context):

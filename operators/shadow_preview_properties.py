@@ -158,6 +158,9 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
         default=True,
         update=settings_changed,
     )
+    switched_off: PointerProperty(
+        type=bpy.types.Light, description="The light whose own shadow this preview has switched off"
+    )
     image: PointerProperty(type=bpy.types.Image, description="The map's texels")
     group: PointerProperty(type=bpy.types.NodeTree, description="The node group that tests the map")
     composite_image: PointerProperty(type=bpy.types.Image, description="The map's texels, as floats")

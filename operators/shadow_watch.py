@@ -11,20 +11,25 @@ import time
 import bpy
 from bpy.app.handlers import persistent
 
+from ..cycles_integration import roles
 from ..cycles_integration.shadow_preview import (
     KINDS,
     composite_nodes,
-    give_back_shadows,
+    give_back_shadow,
     is_there,
+    light_of,
     nodes_of,
     renew,
     switch_off_shadow,
+    throwing_names,
 )
 
 SHORTEST_PAUSE = 0.1
 """Between two maps [s]."""
 _marked: set[str] = set()
 """Names of scenes whose map is out of date."""
+_throwing: dict[str, frozenset[str]] = {}
+"""Scene → what threw shadows when its map was made."""
 
 
 def mark(scene: bpy.types.Scene):
@@ -50,7 +55,8 @@ def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
     """Make the map anew and keep what it cannot show; where that fails, the last one stays and it is said."""
     preview = scene.panorama_shadow_preview
     _marked.discard(scene.name)
-    if preview.light is None:
+    _throwing[scene.name] = throwing_names(scene)
+    if light_of(preview) is None:
         preview.problem = "the preview's light is gone: choose another"
         return
     try:
@@ -61,8 +67,7 @@ def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
 
 def work_off():
     """Make the maps that are out of date of the scenes that are shown."""
-    shown = {window.scene.name: window.view_layer for window in bpy.context.window_manager.windows}
-    shown.setdefault(bpy.context.scene.name, bpy.context.view_layer)
+    shown = _shown()
     for name in [name for name in _marked if name in shown]:
         shown[name].update()
         refresh(bpy.data.scenes[name], shown[name].depsgraph or bpy.context.evaluated_depsgraph_get())
@@ -81,10 +86,10 @@ def looks_changed(preview, context):
     nodes = [node for material in bpy.data.materials for node in nodes_of(material, preview.group)]
     for node in nodes + composite_nodes(preview.id_data, preview.composite_group):
         node.inputs["Darkness"].default_value = preview.darkness
-    if preview.replaces_own and preview.light is not None:
-        switch_off_shadow(preview.light)
+    if preview.replaces_own and light_of(preview) is not None:
+        switch_off_shadow(preview)
     else:
-        give_back_shadows()
+        give_back_shadow(preview)
 
 
 def light_changed(preview, context):
@@ -96,7 +101,30 @@ def light_changed(preview, context):
 def _at_rest():
     start = time.monotonic()
     work_off()
-    return max(SHORTEST_PAUSE, time.monotonic() - start) if _marked else None
+    if _marked.isdisjoint(_shown()):  # a scene that is not shown waits for its next update
+        return None
+    return max(SHORTEST_PAUSE, time.monotonic() - start)
+
+
+def _shown():
+    """Name → view layer of the scenes that are shown."""
+    shown = {window.scene.name: window.view_layer for window in bpy.context.window_manager.windows}
+    shown.setdefault(bpy.context.scene.name, bpy.context.view_layer)
+    return shown
+
+
+def _is_changed(scene, depsgraph) -> bool:
+    """Whether updates may be of the map; they do not say what began or ceased to throw shadows."""
+    if any(_concerns(update) for update in depsgraph.updates):
+        return True
+    looks = any(isinstance(one.id, bpy.types.Object) and one.is_updated_shading for one in depsgraph.updates)
+    return looks and _throwing.get(scene.name) != throwing_names(scene)
+
+
+def _role_changed(thing):
+    for scene in bpy.data.scenes:
+        if is_kept(scene) and scene.objects.get(thing.name) == thing:
+            mark(scene)
 
 
 def _concerns(update) -> bool:
@@ -111,13 +139,13 @@ def _concerns(update) -> bool:
 
 @persistent
 def _on_change(scene, depsgraph):
-    if is_kept(scene) and any(_concerns(update) for update in depsgraph.updates):
+    if is_kept(scene) and (scene.name in _marked or _is_changed(scene, depsgraph)):
         mark(scene)
 
 
 @persistent
 def _on_frame(scene, depsgraph):
-    if not is_kept(scene) or not any(_concerns(update) for update in depsgraph.updates):
+    if not is_kept(scene) or not _is_changed(scene, depsgraph):
         return
     if any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows):
         mark(scene)
@@ -128,6 +156,7 @@ def _on_frame(scene, depsgraph):
 @persistent
 def _on_other_file(*_):
     _marked.clear()
+    _throwing.clear()
     for scene in bpy.data.scenes:
         mark(scene)
 
@@ -150,14 +179,17 @@ HANDLERS = (
 
 def register():
     """Begin to watch."""
+    roles.watchers.append(_role_changed)
     for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
-    """Leave no handler and no timer."""
+    """Leave no handler, watcher and timer."""
+    roles.watchers.remove(_role_changed)
     for name, handler in HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
     if bpy.app.timers.is_registered(_at_rest):
         bpy.app.timers.unregister(_at_rest)
     _marked.clear()
+    _throwing.clear()

@@ -8,14 +8,15 @@
 What the nodes give equals `ibl_toolkit.mobile.shadow_maps.visibility` within 1/255.
 """
 
-from .casters import KINDS, casters_of
+from .casters import KINDS, casters_of, throwing_names
 from .composite import composite_nodes, put_on_picture, take_off_picture
 from .group import WIDEST_WINDOW, aim_group, build_group, fits
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_map_of
 from .map_image import store_map
+from .own_shadow import give_back_shadow, is_there, light_of, switch_off_shadow
 from .receivers import has_surface, nodes_of, put_on, take_off
-from .upkeep import discard, give_back_shadows, is_there, renew, settings_of, switch_off_shadow
+from .upkeep import discard, renew, settings_of
 
 __all__ = [
     "COMPOSITOR",
@@ -28,9 +29,10 @@ __all__ = [
     "composite_nodes",
     "discard",
     "fits",
-    "give_back_shadows",
+    "give_back_shadow",
     "has_surface",
     "is_there",
+    "light_of",
     "nodes_of",
     "put_on",
     "put_on_picture",
@@ -41,4 +43,5 @@ __all__ = [
     "switch_off_shadow",
     "take_off",
     "take_off_picture",
+    "throwing_names",
 ]

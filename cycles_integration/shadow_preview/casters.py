@@ -15,11 +15,13 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     """Points (V, 3) [m] of the world and triangles (T, 3), their indices, of all that throws shadows.
 
     That is what renders show of the role SYNTHETIC, unless its ray visibility leaves shadows out: what the
-    photograph shows throws its shadows there already.
+    photograph shows throws its shadows there already. What views alone show, by a collection that renders
+    leave out, throws none.
     """
+    hidden = _hidden(depsgraph.view_layer)
     points, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
     for instance in depsgraph.object_instances:
-        if not _throws(instance):
+        if not _is_caster(instance, hidden):
             continue
         mesh = instance.object.to_mesh()
         if mesh is not None:
@@ -32,12 +34,40 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(points), np.concatenate(triangles)
 
 
-def _throws(instance):
+def throwing_names(scene: bpy.types.Scene) -> frozenset[str]:
+    """Names of the scene's objects that throw shadows as far as it is theirs to say: compared with those of
+    an earlier moment, it tells a change that no update names."""
+    return frozenset(thing.name for thing in scene.objects if thing.type in KINDS and _throws(thing, thing))
+
+
+def _is_caster(instance, hidden):
     thing = instance.object
     own = thing.original
-    if thing.type not in KINDS or not instance.show_self or own.hide_render or roles.LAMP in own:
+    stands = instance.parent.original if instance.is_instance else own  # an instance is where its parent is
+    if thing.type not in KINDS or not instance.show_self or stands in hidden:
+        return False
+    return _throws(thing, own)
+
+
+def _throws(thing, own):
+    if own.hide_render or roles.LAMP in own:
         return False
     return thing.visible_shadow and own.panorama_role == roles.SYNTHETIC
+
+
+def _hidden(view_layer):
+    """Objects of a view layer that are only in collections which renders leave out."""
+    hidden, shown = set(), set()
+
+    def sort_out(layer, is_hidden):
+        is_hidden = is_hidden or layer.collection.hide_render
+        if not layer.exclude:
+            (hidden if is_hidden else shown).update(layer.collection.objects)
+        for child in layer.children:
+            sort_out(child, is_hidden)
+
+    sort_out(view_layer.layer_collection, False)
+    return hidden - shown
 
 
 def _numbers(items, name, kind):

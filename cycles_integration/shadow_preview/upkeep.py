@@ -11,6 +11,7 @@ from .group import aim_group, build_group, fits, refuse_wide
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_map_of
 from .map_image import store_map
+from .own_shadow import give_back_shadow
 from .receivers import take_off
 
 MAP = "Shadow Map"
@@ -19,8 +20,6 @@ KINDS_OF = {
     COMPOSITOR: ("composite_image", "composite_group", "Shadow Map Composite"),
 }
 """Kind of node tree → the preview's properties for its image and group, and the group's name."""
-OWN_SHADOW = "panorama_own_shadow"
-"""Custom property of a light whose own shadow the preview has switched off."""
 
 
 def settings_of(preview) -> ShadowSettings:
@@ -65,8 +64,7 @@ def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> ShadowMap:
 
 
 def discard(preview):
-    """Take the preview out of materials, compositor and file; lights have their own shadows again."""
-    give_back_shadows()
+    """Take the preview out of materials, compositor and file; its light has its own shadow again."""
     for image_name, group_name, _ in KINDS_OF.values():
         image, group = getattr(preview, image_name), getattr(preview, group_name)
         setattr(preview, image_name, None)
@@ -75,11 +73,7 @@ def discard(preview):
             _remove(group, preview.id_data)
         if image is not None:
             bpy.data.images.remove(image)
-
-
-def is_there(preview) -> bool:
-    """Whether a scene has a preview, in materials or in its compositor."""
-    return preview.group is not None or preview.composite_group is not None
+    give_back_shadow(preview)
 
 
 def _keep(preview, name, value):
@@ -94,19 +88,3 @@ def _remove(group, scene):
     inner = {node.node_tree for node in group.nodes if node.type == "GROUP"}
     for tree in (group, *filter(None, inner)):
         bpy.data.node_groups.remove(tree)
-
-
-def switch_off_shadow(light: bpy.types.Object):
-    """Leave a light's own shadow out, and that of no other."""
-    give_back_shadows()
-    if light.data.library is None and light.data.use_shadow:
-        light.data[OWN_SHADOW] = True
-        light.data.use_shadow = False
-
-
-def give_back_shadows():
-    """Give lights the shadows that `switch_off_shadow` has taken from them."""
-    for data in bpy.data.lights:
-        if OWN_SHADOW in data and data.library is None:
-            del data[OWN_SHADOW]
-            data.use_shadow = True

@@ -1,4 +1,4 @@
-"""Operators of the shadow preview: materials wear it, it follows the scene, and it goes without a trace."""
+"""Operators of the shadow preview: materials wear it, it follows the scene, and it can be taken off again."""
 
 import bpy
 import numpy as np
@@ -284,3 +284,81 @@ def test_no_handler_is_left(fresh_blend):
     expanded_panoramas.unregister()
     assert [len(one) for one in lists] == [count - 1 for count in there]
     expanded_panoramas.register()
+
+
+def at_rest():
+    for _ in range(3):
+        bpy.context.view_layer.update()
+        shadow_watch.work_off()
+    bpy.context.view_layer.update()
+    assert not shadow_watch.is_waiting()
+
+
+def test_one_scenes_preview_leaves_the_lights_of_another_alone(scene):
+    bpy.ops.panorama.preview_shadows()
+    first = scene.panorama_shadow_preview.light.data
+    other = scene.copy()
+    for thing in list(other.collection.objects):
+        other.collection.objects.unlink(thing)
+    bpy.context.window.scene = other
+    preview = other.panorama_shadow_preview
+    for name in ("light", "switched_off", "image", "group"):
+        setattr(preview, name, None)
+    shadow_pictures.still_life()
+    second = shadow_pictures.add_light("SUN").data
+    bpy.ops.panorama.composite_shadows()
+    assert not first.use_shadow
+    assert not second.use_shadow
+    preview.darkness = 0.5
+    bpy.ops.panorama.remove_shadow_preview()
+    assert not first.use_shadow
+    assert second.use_shadow
+
+
+def test_darkness_makes_no_new_map(scene):
+    bpy.ops.panorama.preview_shadows()
+    at_rest()
+    scene.panorama_shadow_preview.darkness = 0.5
+    bpy.context.view_layer.update()
+    assert not shadow_watch.is_waiting()
+
+
+def test_a_deleted_light_is_gone(scene):
+    bpy.ops.panorama.preview_shadows()
+    select(bpy, "SUN")
+    bpy.ops.object.delete()
+    bpy.context.view_layer.update()
+    shadow_watch.work_off()
+    assert "light is gone" in scene.panorama_shadow_preview.problem
+    assert not bpy.ops.panorama.renew_shadow_preview.poll()
+
+
+@pytest.mark.parametrize(("name", "value"), [("visible_shadow", False), ("panorama_role", "SUPPORT")])
+def test_what_ceases_to_throw_a_shadow_is_noticed(scene, name, value):
+    bpy.ops.panorama.preview_shadows()
+    at_rest()
+    before = texels(scene)
+    setattr(bpy.data.objects["ball"], name, value)
+    bpy.context.view_layer.update()
+    shadow_watch.work_off()
+    assert not np.array_equal(texels(scene), before)
+
+
+def test_the_timer_ends_while_what_is_marked_is_not_shown(scene):
+    bpy.ops.panorama.preview_shadows()
+    at_rest()
+    bpy.context.window.scene = bpy.data.scenes.new("shown")
+    scene.panorama_shadow_preview.window = 5
+    assert shadow_watch.is_waiting()
+    assert shadow_watch._at_rest() is None
+    assert shadow_watch.is_waiting()
+
+
+def test_collections_that_renders_leave_out_throw_no_shadow(scene):
+    whole = len(shadow_preview.casters_of(bpy.context.evaluated_depsgraph_get())[1])
+    box, collection = bpy.data.objects["Cube"], bpy.data.collections.new("views")
+    scene.collection.children.link(collection)
+    collection.objects.link(box)
+    scene.collection.objects.unlink(box)
+    collection.hide_render = True
+    assert len(shadow_preview.casters_of(bpy.context.evaluated_depsgraph_get())[1]) == whole - 12
