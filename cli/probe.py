@@ -83,13 +83,8 @@ def add_options(parser):
     add("--ball-radius", metavar="M", type=positive, help="[m]; without it, distances are in radii")
     add("--ball-centre", metavar=("X", "Y", "Z"), type=float, nargs=3, help="in the marker's frame [m]")
     add("--outline", metavar="X,Y", type=_point, nargs="+", help="3 or more points of its outline [px]")
-    add(
-        "--lights",
-        metavar="N",
-        type=whole_number(1, MOST),
-        default=3,
-        help="at most so many, strongest first (3)",
-    )
+    at_most = whole_number(1, MOST)
+    add("--lights", metavar="N", type=at_most, default=3, help="at most so many, strongest first (3)")
     add("--domain", choices=tuple(DOMAINS), default="image", help="where lights are looked for (image)")
     add = parser.add_argument_group("panorama of a mirror ball").add_argument
     add("--unwrap", metavar="OUT.exr", type=Path, help="write it; alpha 0: the ball's blind spot")
@@ -187,8 +182,10 @@ def _refuse_options(options):
     for name, needed in needs:
         if getattr(options, name) is not None and getattr(options, needed) is None:
             raise ValueError(f"{_flag(name)}: needs {_flag(needed)} too")
-    for name in ("ball_radius", "outline", "unwrap"):
-        if options.shadow is not None and getattr(options, name) is not None:
+    if options.dictionary != DICTIONARY and options.marker_size is None:
+        raise ValueError("--dictionary: needs --marker-size too")
+    for name in ("ball_radius", "outline", "unwrap", "kind", "lights", "domain"):
+        if options.shadow is not None and getattr(options, name) != getattr(ProbeOptions, name):
             raise ValueError(f"{_flag(name)}: does nothing with --shadow, which needs no ball")
     if options.unwrap is not None and options.kind != "mirror":
         raise ValueError("--unwrap: a diffuse ball mirrors no panorama")

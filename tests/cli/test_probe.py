@@ -123,6 +123,11 @@ def test_batch(photo, panorama, tmp_path):
             (*MARKER, "--shadow", "1,2", "3,4", "--height", 1, "--ball-radius", 1),
             "does nothing with --shadow",
         ),
+        *(
+            ((*MARKER, "--shadow", "1,2", "3,4", "--height", 1, *extra), "does nothing with --shadow")
+            for extra in (("--kind", "diffuse"), ("--lights", 2), ("--domain", "sphere"))
+        ),
+        (("--fov", 42, "--dictionary", "6X6_50"), "--dictionary: needs --marker-size too"),
         (("--fov", 42, "--marker-id", 3), "--marker-id: needs --marker-size too"),
         (("--fov", 42, "--width", 64), "--width: needs --unwrap too"),
         (("--fov", 42, "--outline", "1;2"), "must be a point X,Y"),

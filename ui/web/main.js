@@ -23,15 +23,18 @@ function start(image) {
 
   const paint = () => {
     resize(scene.background.kind === "photo" ? image : null);
-    picture.draw(view, maps);
+    if (picture) {
+      picture.draw(view, maps);
+    }
   };
   const later = onceAFrame(paint);
   const choose = () => {
     const settings = scene.shadow_settings[choice.selectedIndex];
-    gl.deleteTexture(maps);
+    const newMaps = drawShadowMaps(gl, sources, uploaded, scene.lights, settings);
+    const newPicture = new Picture(gl, sources, uploaded, scene, settings, texture);
+    gl.deleteTexture(maps); // only now: where the new ones fail, the old ones stay
     picture?.free();
-    maps = drawShadowMaps(gl, sources, uploaded, scene.lights, settings);
-    picture = new Picture(gl, sources, uploaded, scene, settings, texture);
+    [maps, picture] = [newMaps, newPicture];
     paint();
   };
   choice.append(...scene.shadow_settings.map(({ label }) => new Option(label)));
