@@ -31,8 +31,8 @@ def capture_collections(
     layer each; `options.most` does not count. Depth as of `capture_surfaces`; where no collection is seen,
     the first layer is at infinity. The scene stays as it is.
 
-    Raises: ValueError for a collection that is not in the scene, one within another, and for surfaces that
-    lie in none of them.
+    Raises: ValueError for a collection that is not in the scene, one within another, for surfaces that lie in
+    none of them, instanced ones among these, and for things in two of them.
 
     Source: thesis, 6.3.2, Fig. 6-12.
     """
@@ -110,13 +110,30 @@ def _refuse_overlaps(groups):
             raise ValueError(f"collection '{inside.name}' lies in '{group.name}': name one of them")
         if groups.count(group) > 1:
             raise ValueError(f"collection '{group.name}' is named twice")
+    for number, group in enumerate(groups):
+        own = set(group.all_objects)
+        for other in groups[:number]:
+            both = [thing.name for thing in other.all_objects if thing in own and _shows(thing)]
+            if both:
+                names = f"'{other.name}' and '{group.name}'"
+                raise ValueError(f"{_listed(both)} in both collections {names}: must be in one of them")
 
 
 def _refuse_strays(layer, groups):
     layer.update()
     sorted_out = {thing for group in groups for thing in group.all_objects}
-    strays = [thing.name for thing in layer.objects if thing.type in SURFACES and not thing.hide_render]
+    strays = [thing.name for thing in layer.objects if _shows(thing)]
     strays = [name for name in strays if name not in {thing.name for thing in sorted_out}]
     if strays:
-        listed = ", ".join(f"'{name}'" for name in strays[:5]) + (", …" if len(strays) > 5 else "")
-        raise ValueError(f"{listed} in none of the collections {', '.join(g.name for g in groups)}")
+        raise ValueError(f"{_listed(strays)} in none of the collections {', '.join(g.name for g in groups)}")
+
+
+def _shows(thing):
+    """Whether it has, or instances, surfaces that are rendered."""
+    instanced = thing.instance_collection if thing.instance_type == "COLLECTION" else None
+    is_seen = thing.type in SURFACES or (instanced is not None and any(map(_shows, instanced.all_objects)))
+    return is_seen and not thing.hide_render
+
+
+def _listed(names):
+    return ", ".join(f"'{name}'" for name in names[:5]) + (", …" if len(names) > 5 else "")

@@ -63,6 +63,30 @@ def test_the_radius_is_half_of_what_is_nearest(scene):
     assert panorama.radius == pytest.approx(0.5, rel=0.05)
 
 
+def test_things_of_two_collections_are_refused(scene):
+    bpy.data.collections["ground"].objects.link(bpy.data.objects["ball"])
+    with pytest.raises(ValueError, match="'ball' in both collections 'back' and 'front'"):
+        capture_collections(scene, Matrix(), 0.5, TINY, ["back", "front"])
+
+
+def test_an_empty_that_instances_surfaces_is_a_stray(scene):
+    def add_empty(name, instanced, parent):
+        empty = bpy.data.objects.new(name, None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", instanced
+        parent.objects.link(empty)
+
+    lamps = new_collection("lamps")
+    lamps.objects.link(bpy.data.objects.new("lamp", bpy.data.lights.new("lamp", "POINT")))
+    nested = new_collection("nested")
+    add_empty("inner", bpy.data.collections["front"], nested)
+    add_empty("light", lamps, scene.collection)
+    add_empty("inside", bpy.data.collections["front"], bpy.data.collections["back"])
+    capture_collections(scene, Matrix.Translation(EYE), 0.5, TINY, ["back", "front"])
+    add_empty("outer", nested, scene.collection)
+    with pytest.raises(ValueError, match="'outer' in none of the collections back, front"):
+        capture_collections(scene, Matrix(), 0.5, TINY, ["back", "front"])
+
+
 @pytest.mark.parametrize(
     ("names", "words"),
     [
