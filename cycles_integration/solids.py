@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import bpy
 import numpy as np
 from mathutils import Vector
@@ -11,11 +13,18 @@ def closed_solids(layer: bpy.types.ViewLayer, origin: Vector) -> set[bpy.types.O
     """The objects of a view layer that are closed all round, face outwards, and don't hold the origin.
 
     A face's edges must each be shared with one other face that goes round it the other way; vertices in one
-    place count as one. An object with instances is one of these if none of them holds the origin.
+    place count as one. An object with instances is one of these if none of them holds the origin. Objects,
+    collections and modifiers count as they are rendered, whatever the viewport shows.
     """
     layer.update()
+    with _as_rendered(layer):
+        layer.update()
+        return _closed_in(layer.depsgraph, origin)
+
+
+def _closed_in(depsgraph, origin):
     found, others, known = set(), set(), {}
-    for instance in layer.depsgraph.object_instances:
+    for instance in depsgraph.object_instances:
         thing = instance.object.original
         if instance.object.type != "MESH":
             continue
@@ -27,6 +36,52 @@ def closed_solids(layer: bpy.types.ViewLayer, origin: Vector) -> set[bpy.types.O
         is_solid = triangles is not None and not _holds(triangles, instance.matrix_world, origin)
         (found if is_solid else others).add(thing)
     return found - others
+
+
+@contextlib.contextmanager
+def _as_rendered(layer):
+    """While the block runs, the viewport shows what is rendered of a view layer."""
+    things, kept = _things(layer.objects), []
+    unseen = [thing for thing in layer.objects if thing.hide_get(view_layer=layer)]
+
+    def lend(owner, name, value):
+        kept.append((owner, name, getattr(owner, name)))
+        setattr(owner, name, value)
+
+    try:
+        for child in _children(layer.layer_collection):
+            lend(child, "hide_viewport", False)
+            lend(child.collection, "hide_viewport", child.collection.hide_render)
+        for thing in things:
+            lend(thing, "hide_viewport", thing.hide_render)
+            for modifier in thing.modifiers:
+                lend(modifier, "show_viewport", modifier.show_render)
+        for thing in unseen:
+            thing.hide_set(False, view_layer=layer)
+        yield
+    finally:
+        for owner, name, value in reversed(kept):
+            setattr(owner, name, value)
+        for thing in unseen:
+            thing.hide_set(True, view_layer=layer)
+
+
+def _things(objects):
+    """Objects, and those of the collections that they instance."""
+    found, left = set(), list(objects)
+    while left:
+        thing = left.pop()
+        if thing not in found:
+            found.add(thing)
+            instanced = thing.instance_collection
+            left.extend(instanced.all_objects if instanced is not None else ())
+    return found
+
+
+def _children(collection):
+    for child in collection.children:
+        yield child
+        yield from _children(child)
 
 
 def _outward_triangles(mesh):
