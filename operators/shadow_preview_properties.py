@@ -90,8 +90,9 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
         update=_window_changed,
     )
     offset_by_itself: BoolProperty(
-        name="Offset by Itself",
-        description="Take the least offset that keeps the method and window free of acne",
+        name="Settings by Themselves",
+        description="Take what was measured as best: the least offset that keeps the method and window free "
+        "of acne, and the bleeding reduction and exponent of method and storage",
         default=True,
         update=settings_changed,
     )

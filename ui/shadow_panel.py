@@ -47,13 +47,16 @@ def _map_names(preview):
     names = ["method", "resolution", "storage"]
     if preview.method in FILTERED:
         names.append("window")
-    if preview.method in ("vsm", "evsm"):
-        names.append("bleeding_reduction")
-    return [*names, "exponent"] if preview.method == "evsm" else names
+    return names
 
 
 def _offset_names(preview):
-    return ["offset_by_itself", *([] if preview.offset_by_itself else ["offset_factor", "offset_units"])]
+    if preview.offset_by_itself:
+        return ["offset_by_itself"]
+    names = ["offset_by_itself", "offset_factor", "offset_units"]
+    if preview.method in ("vsm", "evsm"):
+        names.append("bleeding_reduction")
+    return [*names, "exponent"] if preview.method == "evsm" else names
 
 
 classes = (PANORAMA_PT_device_shadows,)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ...ibl_toolkit.mobile.shadow_maps import ShadowMap, ShadowSettings
-from ...ibl_toolkit.mobile.shadow_maps.suggestion import offsets
+from ...ibl_toolkit.mobile.shadow_maps.suggestion import exponent, offsets, reduction
 from .composite import take_off_picture
 from .group import aim_group, build_group, fits, refuse_wide
 from .kinds import COMPOSITOR, SHADER
@@ -28,8 +28,10 @@ def settings_of(preview) -> ShadowSettings:
     Raises ValueError where nodes cannot have them.
     """
     factor, units = preview.offset_factor, preview.offset_units
+    bleeding, strength = preview.bleeding_reduction, preview.exponent
     if preview.offset_by_itself:
         factor, units = offsets(preview.method, preview.window)
+        bleeding, strength = reduction(preview.method, preview.storage), exponent(preview.storage)
     settings = ShadowSettings(
         method=preview.method,
         resolution=preview.resolution,
@@ -37,8 +39,8 @@ def settings_of(preview) -> ShadowSettings:
         window=preview.window,
         offset_factor=factor,
         offset_units=units,
-        bleeding_reduction=preview.bleeding_reduction,
-        exponent=preview.exponent,
+        bleeding_reduction=bleeding,
+        exponent=strength,
     )
     refuse_wide(settings)
     return settings

@@ -362,3 +362,14 @@ def test_collections_that_renders_leave_out_throw_no_shadow(scene):
     scene.collection.objects.unlink(box)
     collection.hide_render = True
     assert len(shadow_preview.casters_of(bpy.context.evaluated_depsgraph_get())[1]) == whole - 12
+
+
+def test_settings_by_themselves_are_those_that_were_measured(scene):
+    preview = scene.panorama_shadow_preview
+    for method, storage, expected in (("vsm", "8+8", 0.3), ("evsm", "16+16", 0.05), ("evsm", "8+8", 0.15)):
+        preview.method, preview.storage = method, storage
+        settings = shadow_preview.settings_of(preview)
+        assert settings.bleeding_reduction == expected
+        assert settings.exponent == (20 if storage == "8+8" else 40)
+    preview.offset_by_itself, preview.exponent = False, 7
+    assert shadow_preview.settings_of(preview).exponent == 7

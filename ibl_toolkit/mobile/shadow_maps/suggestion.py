@@ -40,9 +40,19 @@ def suggested_settings(
         window=window,
         offset_factor=factor,
         offset_units=units,
-        bleeding_reduction=VSM_REDUCTION if method == "vsm" else REDUCTIONS.get(storage, 0.0),
-        exponent=EXPONENTS.get(storage, EXPONENTS["float32"]),
+        bleeding_reduction=reduction(method, storage),
+        exponent=exponent(storage),
     )
+
+
+def reduction(method: str, storage: str) -> float:
+    """Of light bleeding; 0 for a storage that ShadowSettings refuses."""
+    return VSM_REDUCTION if method == "vsm" else REDUCTIONS.get(storage, 0.0)
+
+
+def exponent(storage: str) -> float:
+    """Of `evsm`."""
+    return EXPONENTS.get(storage, EXPONENTS["float32"])
 
 
 def offsets(method: str, window: int) -> tuple[float, float]:
