@@ -44,9 +44,9 @@ class PanoramaLayers(bpy.types.PropertyGroup):
     )
     most: IntProperty(
         name="Layers",
-        description="Surfaces along a ray, at most: each layer shows what hides behind the one before. Fewer "
-        "are made where nothing more would come into sight; backs of objects come in further layers. For an "
-        "RGB-D panorama, layers at most: with too few, depth jumps within the last",
+        description="Largest number of surfaces along a ray: each shows what hides behind the one before. "
+        "Fewer are made where nothing more would come into sight; backs of objects come in further layers. "
+        "For an RGB-D panorama, of layers: with too few, depth jumps within the last",
         default=4,
         min=1,
         soft_max=8,
