@@ -1,6 +1,8 @@
-"""The triangles of what throws shadows in a scene, as it is evaluated: modifiers and instances included."""
+"""The meshes of what renders show of a scene, as it is evaluated: modifiers and instances included."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
 
 import bpy
 import numpy as np
@@ -18,41 +20,65 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     photograph shows throws its shadows there already. What views alone show, by a collection that renders
     leave out, throws none.
     """
-    hidden = _hidden(depsgraph.view_layer)
     points, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
-    for instance in depsgraph.object_instances:
-        if not _is_caster(instance, hidden):
-            continue
-        mesh = instance.object.to_mesh()
-        if mesh is not None:
-            matrix = np.array(instance.matrix_world)
-            points.append(_numbers(mesh.vertices, "co", np.float32) @ matrix[:3, :3].T + matrix[:3, 3])
-            mesh.calc_loop_triangles()
-            triangles.append(_numbers(mesh.loop_triangles, "vertices", np.int32) + count)
-            count += len(points[-1])
-        instance.object.to_mesh_clear()
+    for instance, mesh in shown_meshes(depsgraph, throws_shadow):
+        points.append(points_of(instance, mesh))
+        triangles.append(numbers(mesh.loop_triangles, "vertices", np.int32) + count)
+        count += len(points[-1])
     return np.concatenate(points), np.concatenate(triangles)
+
+
+def shown_meshes(
+    depsgraph: bpy.types.Depsgraph, is_wanted: Callable[[bpy.types.Object], bool]
+) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Mesh]]:
+    """Each instance that renders show and whose evaluated object is wanted, with its mesh in triangles.
+
+    Both are there for their step of the loop only. The photograph's lamps are left out.
+    """
+    for instance in shown_instances(depsgraph, KINDS):
+        thing = instance.object
+        if roles.LAMP in thing.original or not is_wanted(thing):
+            continue
+        mesh = thing.to_mesh()
+        try:
+            if mesh is not None:
+                mesh.calc_loop_triangles()
+                yield instance, mesh
+        finally:
+            thing.to_mesh_clear()
+
+
+def shown_instances(
+    depsgraph: bpy.types.Depsgraph, kinds: Collection[str]
+) -> Iterator[bpy.types.DepsgraphObjectInstance]:
+    """Each instance of some types of objects that renders show; it is there for its step of the loop only."""
+    hidden = _hidden(depsgraph.view_layer)
+    for instance in depsgraph.object_instances:
+        own = instance.object.original
+        # An instance is where its parent is.
+        stands = instance.parent.original if instance.is_instance else own
+        if own.type in kinds and instance.show_self and stands not in hidden and not own.hide_render:
+            yield instance
+
+
+def throws_shadow(thing: bpy.types.Object) -> bool:
+    """Whether an object, evaluated or not, throws shadows as far as it is its own to say."""
+    own = thing.original
+    if own.hide_render or roles.LAMP in own:
+        return False
+    return thing.visible_shadow and own.panorama_role == roles.SYNTHETIC
+
+
+def points_of(instance: bpy.types.DepsgraphObjectInstance, mesh: bpy.types.Mesh) -> np.ndarray:
+    """Vertices (V, 3) in the world [m]."""
+    matrix = np.array(instance.matrix_world)
+    return numbers(mesh.vertices, "co", np.float32) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def throwing_names(scene: bpy.types.Scene) -> frozenset[str]:
     """Names of the scene's objects that throw shadows as far as it is theirs to say: compared with those of
     an earlier moment, it tells a change that no update names."""
-    return frozenset(thing.name for thing in scene.objects if thing.type in KINDS and _throws(thing, thing))
-
-
-def _is_caster(instance, hidden):
-    thing = instance.object
-    own = thing.original
-    stands = instance.parent.original if instance.is_instance else own  # an instance is where its parent is
-    if thing.type not in KINDS or not instance.show_self or stands in hidden:
-        return False
-    return _throws(thing, own)
-
-
-def _throws(thing, own):
-    if own.hide_render or roles.LAMP in own:
-        return False
-    return thing.visible_shadow and own.panorama_role == roles.SYNTHETIC
+    return frozenset(thing.name for thing in scene.objects if thing.type in KINDS and throws_shadow(thing))
 
 
 def _hidden(view_layer):
@@ -70,7 +96,8 @@ def _hidden(view_layer):
     return hidden - shown
 
 
-def _numbers(items, name, kind):
+def numbers(items, name: str, kind) -> np.ndarray:
+    """Three numbers of each item of a mesh, (n, 3): np.float32 comes as float64, np.int32 as int64."""
     values = np.empty(3 * len(items), kind)
     items.foreach_get(name, values)
     return values.reshape(-1, 3).astype(np.float64 if kind is np.float32 else np.int64)

@@ -1,8 +1,8 @@
 """A scene for a phone: glTF 2.0 in one file, its lights' cameras and the kinds of shadow map beside it.
 
 Everything that glTF has no word for is in the extras: of the scene the lights, the kinds of shadow map, the
-ambient light, the camera and the background; of each material the mesh's role. Other programs read the
-meshes.
+ambient light, the camera and the background; of each material the mesh's role and whether it throws shadows.
+Other programs read the meshes.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..layers.views.pinhole import Pinhole
 from .shadow_maps import LightCamera, ShadowSettings
 
 ROLES = ("support", "synthetic")
-"""Real, only receives shadows; new, has a colour of its own. Both throw shadows."""
+"""Real, shows the background but for what shadows take of it; new, has a colour of its own."""
 MOST_LIGHTS = 8
 """A phone tests each of them in each pixel."""
 _NEAREST = 0.01  # distance from the camera [m] from which on meshes are drawn
@@ -30,7 +30,8 @@ class SceneMesh:
 
     points: (V, 3) in the world [m]. triangles: (T, 3) indices. role: of ROLES. albedo: (3,) linear, 0 to 1,
     of what is new. normals: (V, 3) unit vectors, or None for flat triangles, whose normals are to the side
-    from which their corners run counter-clockwise.
+    from which their corners run counter-clockwise. throws: whether it throws shadows; those of a real thing
+    are in the photograph already, and would be seen twice.
 
     Raises: ValueError that names the mesh and what is right.
     """
@@ -41,6 +42,7 @@ class SceneMesh:
     role: str = "support"
     albedo: tuple[float, float, float] = (0.8, 0.8, 0.8)
     normals: np.ndarray | None = None
+    throws: bool = True
 
     def __post_init__(self):
         points, triangles = np.asarray(self.points), np.asarray(self.triangles)
@@ -153,7 +155,7 @@ def _material(mesh):
             "roughnessFactor": 1,
         },
         "doubleSided": True,
-        "extras": {"role": mesh.role},
+        "extras": {"role": mesh.role, "throws": bool(mesh.throws)},
     }
 
 

@@ -29,7 +29,7 @@ export function lookupValues(settings, lights) {
   };
 }
 
-/* Draw the maps of meshes -> their texture, a layer for each light.
+/* Draw the maps of the meshes that throw shadows -> their texture, a layer for each light.
  * Errors: a resolution beyond the device's, and what `textureFormat` and `program` say. */
 export function drawShadowMaps(gl, sources, meshes, lights, settings) {
   const { resolution } = settings;
@@ -76,7 +76,7 @@ function drawDepths(gl, sources, meshes, lights, settings, maps, clear) {
     gl.clearBufferfv(gl.COLOR, 0, clear);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     use(gl, depth, { light: { "1i": light } });
-    meshes.forEach((mesh) => draw(gl, mesh));
+    meshes.filter(({ extras }) => extras.throws).forEach((mesh) => draw(gl, mesh));
   });
   gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, null);
   gl.deleteRenderbuffer(nearest);

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+
+from .settings import ShadowSettings
 
 TEXTURE_FROM_CLIP = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])
 """The bias matrix: from clip space, −1 to 1, to what textures and depth buffers have, 0 to 1."""
@@ -96,6 +98,19 @@ class LightCamera:
         tangents = np.abs(before[:, :2] / before[:, 2:]).max(axis=0) if len(before) else np.full(2, WIDEST)
         half = np.clip(tangents * (1 + _MARGIN), _FLAT, WIDEST)
         return cls(eye, axes, True, float(half[0]), float(half[1]), near, max(far, near * (1 + _FLAT)))
+
+    def with_border(self, settings: ShadowSettings) -> LightCamera:
+        """Wider by a border of the filter's width, so that no blur ends at the map's border.
+
+        >>> noon = LightCamera(np.array([0, 0, 4.0]), np.diag([-1.0, 1, -1]), False, 1, 1, 0, 4)
+        >>> noon.with_border(ShadowSettings("vsm", 64, window=7)).half_width
+        1.28
+        """
+        border = settings.window if settings.method != "hard" else 0
+        wider = settings.resolution / max(settings.resolution - 2 * border, settings.resolution / 2)
+        most = WIDEST if self.perspective else np.inf
+        sizes = (min(half * wider, most) for half in (self.half_width, self.half_height))
+        return replace(self, **dict(zip(("half_width", "half_height"), sizes, strict=True)))
 
     @property
     def light_from_world(self) -> np.ndarray:

@@ -74,7 +74,7 @@ def test_scene_comes_back(text):
         np.testing.assert_allclose(array(document, binary, attributes["POSITION"]) @ Y_UP, points, atol=1e-6)
         np.testing.assert_allclose(array(document, binary, attributes["NORMAL"]) @ Y_UP, normals, atol=1e-6)
         np.testing.assert_array_equal(array(document, binary, primitive["indices"]).reshape(-1, 3), triangles)
-        assert document["materials"][primitive["material"]]["extras"] == {"role": mesh.role}
+        assert document["materials"][primitive["material"]]["extras"] == {"role": mesh.role, "throws": True}
     extras = document["scenes"][0]["extras"]
     light = scene.lights[0].camera
     np.testing.assert_allclose(
