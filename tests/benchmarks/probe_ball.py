@@ -45,7 +45,8 @@ DIAMETERS, NOISES, BLURS, COUNTS = (
 MISSED_DEG = 10.0
 DEFINITIONS = (
     f"angle [degrees] between each true light and the nearest one found, over {CASES} random places and sets "
-    f"of lights; missed: share of the lights that none is within {MISSED_DEG} degrees of. Ball of {DIAMETER} "
+    f"of lights; missed: share of the lights that none is within {MISSED_DEG} degrees of; doubted: share of the "
+    f"photographs with a warning that a direction is uncertain. Ball of {DIAMETER} "
     f"px, noise {NOISE} of the median (growing with the root of the signal), blur {BLUR} px, {LIGHTS} light, "
     "unless said otherwise; 8-bit sRGB, with clipped highlights on the mirror; ball found by its outline's "
     "edges. Lamps are discs of 1.5 to 6 degrees radius in a smooth room"
@@ -127,14 +128,16 @@ def row(
     domain="image",
 ):
     """Errors of one kind of photograph."""
-    errors, failures = [], 0
+    errors, doubted, failures = [], 0, 0
     for number in range(CASES):
         camera, ball, lamps, image = scene(kind, number, diameter, lights)
         image = degraded(image, blur_px=blur, noise=noise, seed=number)
         photo = make(image) if make else exposed(kind, image, camera, ball)
         try:
             placed = ball if is_placed else place_ball(photo, camera).ball
-            found = estimate_lights(photo, camera, placed, kind, lights, domain).lights
+            estimate = estimate_lights(photo, camera, placed, kind, lights, domain)
+            found = estimate.lights
+            doubted += any("direction is uncertain" in warning for warning in estimate.warnings)
         except ProbeError:
             failures += 1
             found = []
@@ -142,7 +145,7 @@ def row(
             min((angle_deg(f.direction, lamp.direction) for f in found), default=180.0) for lamp in lamps
         ]
     how = {"diameter_px": diameter, "noise": noise, "blur_px": blur, "lights": lights}
-    return {"kind": kind, **how, **summary(errors), "refused": failures}
+    return {"kind": kind, **how, **summary(errors), "doubted": doubted / CASES, "refused": failures}
 
 
 def summary(errors):

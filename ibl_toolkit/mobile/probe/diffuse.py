@@ -125,7 +125,7 @@ def _warnings(lights, shading, cells):
         elif light.uncertainty_deg > UNCERTAIN_DEG:
             yield (
                 f"light {number}: its direction is uncertain by {light.uncertainty_deg:.0f}°, others hide "
-                "its shading"
+                "its shading or explain it as well"
             )
     if shading.rms > MISFIT:
         yield (

@@ -16,8 +16,9 @@ class ProbeLight:
     direction: (3,) unit vector to it, frame `camera`. irradiance: (3,) RGB on a surface that faces it, in the
     photograph's units, times the ball's reflectance (times its albedo over π for a diffuse ball), which the
     photograph does not tell. diameter_deg: of the disc of its solid angle [°]; NaN for a diffuse ball.
-    uncertainty_deg: of the direction [°]: on a mirror ball, what an outline half a cell off
-    moves it by; on a diffuse ball, the standard error that the shading's residual explains.
+    uncertainty_deg: of the direction [°]: on a mirror ball, what an outline half a cell off moves it by; on a
+    diffuse ball, the standard error that the shading's residual explains, or how far off the nearest light is
+    of another set that explains the shading as well.
     cells: of the picture, or of the ball's own domain, that show it. is_clipped: whether it is stronger than
     the photograph holds. is_cut: whether it ends at the ball's rim, or at the frame.
     """

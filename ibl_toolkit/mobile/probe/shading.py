@@ -6,15 +6,21 @@ lit side of each light known, all is linear, so Gauss–Newton steps between sid
 Tukey's weights against what is not shading: dust, glints, a cast shadow. Lights are added one at a time, each
 at the best of several hundred directions, with and without b; the model with the fewest lights that is no
 worse than the best one by more than chance is taken.
+
+max(0, n·g) = (n·g + |n·g|) / 2: the line where a light's shading begins tells g but for its sign, and of the
+signs only the sum of all gₖ is seen. So a light turned round, with others that make up for the sum, may
+explain the shading as well. Such turns lead out of local optima; of models that are equal, the one with the
+least light is taken, and what the others say instead is the uncertainty.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
 from .ball import across
+from .shading_steps import Shading, evaluated, refined
 
 LEAST_STRENGTH = 0.05
 """Of the strongest light: weaker ones are none."""
@@ -26,30 +32,13 @@ which about nine share a blur."""
 UNEXPLAINED = 0.005
 """Root mean square, of the mean luminance, that no model needs to explain: lamps some degrees wide leave so
 much, and would be split."""
-_STEPS = 40
-_TUKEY = 4.685
 _STARTS = 3
 _SPLIT = np.radians(35.0)
 _APART = np.cos(np.radians(25.0))
-_MAD = 1.4826
-_TRIM, _TRIM_LEAST = 6.0, 0.1  # scales, and means of the luminance: a larger residual counts as one at them
 _CANDIDATES = 600
+_TURNED = 3
+_BETTER = 0.999  # so much less must be left after a turn for one more
 _FEW = 500  # cells to choose among starts by
-_DAMPING, _EVEN = 1e-6, 1e-4  # per cell; the second keeps ambient light even where a slope would be a light's
-
-
-@dataclass(frozen=True, eq=False)
-class Shading:
-    """vectors (k, 3) to the lights, their lengths the luminance that each brings to a facing surface.
-
-    ambient: (4,) a and b, luminance from all around. rms: of the residual. uncertainty_deg: (k,) [°] standard
-    errors.
-    """
-
-    vectors: np.ndarray
-    ambient: np.ndarray
-    rms: float
-    uncertainty_deg: np.ndarray
 
 
 def fit_shading(normals, luminance, count, clipped=None) -> Shading:
@@ -64,7 +53,7 @@ def fit_shading(normals, luminance, count, clipped=None) -> Shading:
     clipped = np.zeros(len(luminance), bool) if clipped is None else clipped
     picture = normals, luminance, clipped
     floor = float(np.median(luminance[~clipped])) if (~clipped).any() else float(luminance.min())
-    even = [_evaluated(*picture, np.zeros((0, 3)), np.array([floor, 0.0, 0.0, 0.0]))]
+    even = [evaluated(*picture, np.zeros((0, 3)), np.array([floor, 0.0, 0.0, 0.0]))]
     sloped = [even[0]]
     for number in range(1, count + 1):
         for models, is_sloped in ((even, False), (sloped, True)):
@@ -74,8 +63,10 @@ def fit_shading(normals, luminance, count, clipped=None) -> Shading:
         models[k] for k in range(1, count + 1) for models in (even, sloped) if k < len(models)
     ]
     best = min(model.rms for model in ordered)
-    limit = best**2 * (1 + CORRELATED * SIGNIFICANT / len(luminance)) + UNEXPLAINED**2
-    return next(model for model in ordered if model.rms**2 <= limit)
+    chance = best**2 * (1 + CORRELATED * SIGNIFICANT / len(luminance))
+    limit = chance + UNEXPLAINED**2
+    chosen = next(model for model in ordered if model.rms**2 <= limit)
+    return _with_least_light(picture, chosen, max(chance, chosen.rms**2), limit)
 
 
 def _with_one_more(normals, luminance, clipped, before, is_sloped):
@@ -86,13 +77,69 @@ def _with_one_more(normals, luminance, clipped, before, is_sloped):
     starts += _splits(before.vectors)
     if not starts:
         return []
-    tried = [_refined(*few, start, before.ambient, is_sloped) for start in starts]
-    start = min(tried, key=lambda shading: shading.rms)
-    found = _refined(normals, luminance, clipped, start.vectors, start.ambient, is_sloped)
-    lengths = np.linalg.norm(found.vectors, axis=1)
-    reach = np.mean(normals @ found.vectors.T > 0, axis=0)
-    is_useful = lengths.min() >= LEAST_STRENGTH * lengths.max()
-    return [found] if is_useful and (reach.min() >= LEAST_REACH or len(lengths) == 1) else []
+    tried = [refined(*few, start, before.ambient, is_sloped) for start in starts]
+    best = sorted(tried, key=_rms)[:_TURNED]
+    start = min((_turned_round(few, model, is_sloped) for model in best), key=_rms)
+    found = refined(normals, luminance, clipped, start.vectors, start.ambient, is_sloped)
+    return [found] if _is_useful(found, normals) else []
+
+
+def _turned_round(picture, model, is_sloped):
+    """The model, with lights turned round while that explains more."""
+    for _ in model.vectors:
+        better = min(_turns(picture, model, is_sloped), key=_rms)
+        if better.rms > _BETTER * model.rms:
+            break
+        model = better
+    return model
+
+
+def _turns(picture, model, is_sloped):
+    """The models to which turning round one light of this one leads."""
+    for number in range(len(model.vectors)):
+        vectors = model.vectors.copy()
+        vectors[number] *= -1
+        yield refined(*picture, vectors, model.ambient, is_sloped)
+
+
+def _with_least_light(picture, chosen, equal, limit):
+    """Of the models that a turn tells from the chosen one, that with the least light.
+
+    equal: mean square up to which a model explains as much as the chosen one. limit: up to which it is
+    possible, so that what it says otherwise is uncertainty.
+    """
+    rivals = [
+        model
+        for model in _turns(picture, chosen, bool(chosen.ambient[1:].any()))
+        if model.rms**2 <= limit and _is_useful(model, picture[0])
+    ]
+    least = min([chosen, *(model for model in rivals if model.rms**2 <= equal)], key=_light)
+    doubts = [_angles_deg(least.vectors, model.vectors) for model in (chosen, *rivals)]
+    return replace(least, uncertainty_deg=np.max([least.uncertainty_deg, *doubts], axis=0))
+
+
+def _rms(model):
+    return model.rms
+
+
+def _light(model):
+    return np.linalg.norm(model.vectors, axis=1).sum()
+
+
+def _angles_deg(vectors, others):
+    """Of vectors (k, 3), the angle (k,) [°] to the nearest of others (m, 3)."""
+    if not len(vectors):
+        return np.zeros(0)
+    units = [v / np.linalg.norm(v, axis=1, keepdims=True) for v in (vectors, others)]
+    return np.degrees(np.arccos(np.clip((units[0] @ units[1].T).max(axis=1), -1, 1)))
+
+
+def _is_useful(model, normals):
+    """Whether each light is one, beside the others."""
+    lengths = np.linalg.norm(model.vectors, axis=1)
+    reach = np.mean(normals @ model.vectors.T > 0, axis=0)
+    is_strong = lengths.min(initial=np.inf) >= LEAST_STRENGTH * lengths.max(initial=0)
+    return is_strong and (len(lengths) <= 1 or reach.min() >= LEAST_REACH)
 
 
 def _starts(normals, luminance, clipped, vectors):
@@ -122,73 +169,6 @@ def _splits(vectors):
         for side in across(vector / np.linalg.norm(vector)):
             off = np.linalg.norm(vector) * np.tan(_SPLIT) * side
             yield np.vstack([others, (vector + off) / 2, (vector - off) / 2])
-
-
-def _refined(normals, luminance, clipped, vectors, ambient, is_sloped):
-    """Gauss–Newton steps between which side each light reaches and the vectors."""
-    vectors, ambient = vectors.copy(), ambient.copy()
-    weights = np.ones(len(luminance))
-    ridge = np.array([_DAMPING] * (vectors.size + 1) + [_EVEN] * 3) * len(luminance)
-    for step in range(_STEPS):
-        residual, jacobian = _residual(normals, luminance, vectors, ambient)
-        if step >= 4:
-            weights = _tukey(residual)
-        weighted = jacobian * (weights * ~(clipped & (residual > 0)))[:, None]
-        gradient = weighted.T @ residual
-        gradient[-3:] += ridge[-3:] * ambient[1:]
-        normal = weighted.T @ jacobian + np.diag(ridge)
-        # At its limit the slope stays where it is in every other step, for the lights to settle beside it.
-        moved = len(gradient) - 3 * (not is_sloped or (step % 2 == 1 and _is_at_limit(ambient)))
-        change = np.zeros(len(gradient))
-        change[:moved] = np.linalg.solve(normal[:moved, :moved], -gradient[:moved])
-        vectors += change[:-4].reshape(-1, 3)
-        ambient = _possible(ambient + change[-4:])
-        if np.abs(change).max() < 1e-6:
-            break
-    return _evaluated(normals, luminance, clipped, vectors, ambient)
-
-
-def _possible(ambient):
-    """Light from everywhere that is nowhere negative: a ≥ 0, |b| ≤ a."""
-    mean, slope = max(ambient[0], 0.0), ambient[1:]
-    return np.concatenate([[mean], slope * min(1.0, mean / max(np.linalg.norm(slope), 1e-30))])
-
-
-def _is_at_limit(ambient):
-    return np.linalg.norm(ambient[1:]) > 0.999 * ambient[0]
-
-
-def _residual(normals, luminance, vectors, ambient):
-    cosines = normals @ vectors.T
-    lit = cosines > 0
-    residual = ambient[0] + normals @ ambient[1:] + np.sum(cosines * lit, axis=1) - luminance
-    lights = (lit[:, :, None] * normals[:, None]).reshape(len(normals), -1)
-    return residual, np.concatenate([lights, np.ones((len(normals), 1)), normals], axis=1)
-
-
-def _tukey(residual):
-    scale = max(_MAD * np.median(np.abs(residual)), 1e-6)
-    return np.square(np.maximum(1 - np.square(residual / (_TUKEY * scale)), 0))
-
-
-def _evaluated(normals, luminance, clipped, vectors, ambient):
-    """Robust rms, and the vectors' standard errors across."""
-    residual, jacobian = _residual(normals, luminance, vectors, ambient)
-    counts = ~(clipped & (residual > 0))
-    # Not Tukey's scale, which is blind to a second light that few cells show.
-    sizes = np.abs(residual[counts])
-    trim = max(_TRIM * _MAD * np.median(sizes), _TRIM_LEAST)
-    rms = float(np.sqrt(np.square(np.minimum(sizes, trim)).mean()))
-    errors = np.zeros(len(vectors))
-    if len(vectors):
-        prior = np.diag([0.0] * (vectors.size + 1) + [_EVEN] * 3) * len(luminance)
-        covariance = np.linalg.pinv(jacobian[counts].T @ jacobian[counts] + prior) * rms**2
-        for k, vector in enumerate(vectors):
-            block = covariance[3 * k : 3 * k + 3, 3 * k : 3 * k + 3]
-            length = max(np.linalg.norm(vector), 1e-12)
-            along = vector @ block @ vector / length**2
-            errors[k] = np.degrees(np.sqrt(max(np.trace(block) - along, 0)) / length)
-    return Shading(vectors, ambient, rms, errors)
 
 
 def _spread(count):

@@ -153,6 +153,22 @@ def test_lights_without_use_are_not_added():
     assert shading.uncertainty_deg[0] < 0.5
 
 
+def test_a_light_that_could_be_turned_round_is_doubted():
+    """A weak one from the left, or from the right and the strong one further left: it looks the same."""
+    turn = np.random.default_rng(1).normal(size=(3000, 3))
+    normals = turn / np.linalg.norm(turn, axis=1, keepdims=True)
+    normals = normals[normals[:, 2] > 0.3]
+    weak, strong = np.array([-0.25, 0.0, 0.02]), np.array([0.0, 0.0, 1.0])
+    luminance = 0.2 + np.maximum(normals @ weak, 0) + np.maximum(normals @ strong, 0)
+    turned = 0.2 + np.maximum(normals @ -weak, 0) + np.maximum(normals @ (strong + weak), 0)
+    np.testing.assert_allclose(turned, luminance)
+    shading = fit_shading(normals, luminance / luminance.mean(), 3)
+    strongest = np.argmax(np.linalg.norm(shading.vectors, axis=1))
+    assert angle_deg(shading.vectors[strongest], strong) < 1  # of the two, that with less light in all
+    assert shading.uncertainty_deg[strongest] == pytest.approx(angle_deg(strong, strong + weak), abs=1)
+    assert shading.uncertainty_deg[1 - strongest] > 45
+
+
 def test_two_exposures_of_one_photograph_agree(mirror_image):
     one, other = (estimate_lights(hdr(k * mirror_image), CAMERA, BALL) for k in (1, 1000))
     for a, b in zip(one.lights, other.lights, strict=True):
