@@ -18,6 +18,7 @@ from . import (
     render_job,
     render_presets,
     set_files,
+    shadow_lights,
     shadow_preview,
     shadow_preview_properties,
     sun_picker,
@@ -46,6 +47,7 @@ OPERATORS = (
     pictures,
     render_presets,
     layers,
+    shadow_lights,
     shadow_preview,
     asset_library,
 )

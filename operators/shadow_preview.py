@@ -12,7 +12,7 @@ from ..cycles_integration.shadow_preview import (
     discard,
     has_surface,
     is_there,
-    light_of,
+    lights_of,
     put_on,
     put_on_picture,
     renew,
@@ -20,14 +20,14 @@ from ..cycles_integration.shadow_preview import (
 )
 from . import shadow_watch
 from .reporting import Reporting, possible
+from .shadow_lights import NO_LIGHT, candidates, choose
 
-NO_LIGHT = "Add a light first: its shadow is shown"
 NEW_MATERIAL = "Shadow Receiver"
 
 
 class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
-    """Show on the selected objects the shadow of the light as a small device draws it: makes the shadow map
-    and puts a node group before the output of their materials, in EEVEE and Cycles"""
+    """Show on the selected objects the shadows of the lights as a small device draws them: makes the shadow
+    maps and puts a node group before the output of their materials, in EEVEE and Cycles"""
 
     bl_idname = "panorama.preview_shadows"
     bl_label = "Preview Shadows"
@@ -38,7 +38,7 @@ class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
         return possible(cls, preview_missing(context))
 
     def work(self, context):
-        """Make the map, and put the group on."""
+        """Make the maps, and put the group on."""
         preview = context.scene.panorama_shadow_preview
         materials, bare, left = _sorted_out(_receivers(context))
         warnings = _make(context, SHADER)
@@ -48,12 +48,12 @@ class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
         for warning in (*left, *warnings):
             self.report({"WARNING"}, warning[0].upper() + warning[1:])
         count = len(materials) + bool(bare)
-        return f"Shadow of '{preview.light.name}' on {count} material{'s' * (count > 1)}; {size_of(preview)}"
+        return f"{_shadows(preview)} on {count} material{'s' * (count > 1)}; {size_of(preview)}"
 
 
 class PANORAMA_OT_composite_shadows(Reporting, bpy.types.Operator):
-    """Darken the rendered picture by the shadow of the light as a small device draws it: puts a node group
-    before the output of the compositor, fed by the passes Position and Normal. Materials stay as they are"""
+    """Darken the rendered picture by the shadows of the lights as a small device draws them: puts a node
+    group before the output of the compositor, fed by the passes Position and Normal. Materials stay as is"""
 
     bl_idname = "panorama.composite_shadows"
     bl_label = "Shadows in the Compositor"
@@ -61,24 +61,24 @@ class PANORAMA_OT_composite_shadows(Reporting, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         """There is a light."""
-        return possible(cls, "" if light_for(context) else NO_LIGHT)
+        return possible(cls, light_missing(context))
 
     def work(self, context):
-        """Make the map, and put the group before the output."""
+        """Make the maps, and put the group before the output."""
         preview = context.scene.panorama_shadow_preview
         warnings = _make(context, COMPOSITOR)
         put_on_picture(context.scene, context.view_layer, preview.composite_group, preview.darkness)
         shadow_watch.looks_changed(preview, context)
         for warning in warnings:
             self.report({"WARNING"}, warning[0].upper() + warning[1:])
-        return f"Shadow of '{preview.light.name}' on the rendered picture; {size_of(preview)}"
+        return f"{_shadows(preview)} on the rendered picture; {size_of(preview)}"
 
 
 class PANORAMA_OT_renew_shadow_preview(Reporting, bpy.types.Operator):
-    """Make the shadow map anew, from where light and objects are now"""
+    """Make the shadow maps anew, from where lights and objects are now"""
 
     bl_idname = "panorama.renew_shadow_preview"
-    bl_label = "Renew Shadow Map"
+    bl_label = "Renew Shadow Maps"
 
     @classmethod
     def poll(cls, context):
@@ -86,15 +86,15 @@ class PANORAMA_OT_renew_shadow_preview(Reporting, bpy.types.Operator):
         return possible(cls, _none_yet(context.scene))
 
     def work(self, context):
-        """Make it."""
+        """Make them."""
         preview = context.scene.panorama_shadow_preview
-        preview.problem = "; ".join(renew(preview, context.evaluated_depsgraph_get()).warnings)
-        return f"Shadow of '{preview.light.name}' is current; {size_of(preview)}"
+        preview.problem = "; ".join(renew(preview, context.evaluated_depsgraph_get()))
+        return f"{_shadows(preview)}, made anew; {size_of(preview)}"
 
 
 class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
-    """Take the preview out of all materials and the compositor, with its map. What they show is as before,
-    and so is the light. Materials and a compositor that had to be added stay, and so do the passes"""
+    """Take the preview out of all materials and the compositor, with its maps. What they show is as before,
+    and so are the lights. Materials and a compositor that had to be added stay, and so do the passes"""
 
     bl_idname = "panorama.remove_shadow_preview"
     bl_label = "Remove Shadow Preview"
@@ -112,51 +112,56 @@ class PANORAMA_OT_remove_shadow_preview(Reporting, bpy.types.Operator):
         return "The shadow preview is gone"
 
 
-def light_for(context) -> bpy.types.Object | None:
-    """The chosen light, else a selected one, else the scene's first sun, else its first light."""
-    chosen = light_of(context.scene.panorama_shadow_preview)
-    if chosen is not None:
-        return chosen
-    lights = [thing for thing in context.scene.objects if thing.type == "LIGHT" and thing.visible_get()]
-    return min(lights, key=lambda one: (not one.select_get(), one.data.type != "SUN"), default=None)
+def light_missing(context) -> str:
+    """What a preview needs wherever it is shown."""
+    return "" if lights_of(context.scene.panorama_shadow_preview) or candidates(context) else NO_LIGHT
 
 
 def preview_missing(context) -> str:
     """What Preview Shadows needs."""
     if context.mode != "OBJECT":
         return "Leave edit mode first"
-    if light_for(context) is None:
-        return NO_LIGHT
-    return "" if _receivers(context) else "Select the objects that receive the shadow"
+    missing = light_missing(context)
+    if not missing and not _receivers(context):
+        missing = "Select the objects that receive the shadow"
+    return missing
 
 
 def size_of(preview) -> str:
-    """What the map takes on the device.
+    """What the maps take on the device.
 
     Raises ValueError for settings that nodes cannot have.
     """
-    settings = settings_of(preview)
-    return f"{settings.bytes_per_texel * settings.resolution**2 / 2**20:.3g} MiB on the device"
+    settings, count = settings_of(preview), len(lights_of(preview))
+    return f"{count * settings.bytes_per_texel * settings.resolution**2 / 2**20:.3g} MiB on the device"
+
+
+def _shadows(preview):
+    names = ", ".join(f"'{light.name}'" for light in lights_of(preview))
+    return f"Shadow{'s' * (',' in names)} of {names}"
 
 
 def _make(context, kind):
-    """Make the map and a kind of group of the light that is to be shown -> warnings."""
+    """Make the maps and a kind of group of the lights that are to be shown -> warnings."""
     preview = context.scene.panorama_shadow_preview
-    before, preview.light = preview.light, light_for(context)
+    before = [row.light for row in preview.lights]
+    left = choose(context)
     try:
-        made = renew(preview, context.evaluated_depsgraph_get(), kind)
+        warnings = renew(preview, context.evaluated_depsgraph_get(), kind)
     except ValueError:
-        preview.light = before
+        preview.lights.clear()
+        for light in before:
+            preview.lights.add().light = light
         raise
-    preview.problem = "; ".join(made.warnings)
-    return made.warnings
+    preview.problem = "; ".join(warnings)
+    return left + warnings
 
 
 def _none_yet(scene):
     preview = scene.panorama_shadow_preview
     if not is_there(preview):
         return "There is no preview"
-    return "Choose a light" if light_of(preview) is None else ""
+    return "" if lights_of(preview) else "Choose a light"
 
 
 def _receivers(context):

@@ -1,8 +1,17 @@
 """What a scene's shadow preview is made with; saved in the .blend."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
+from ..cycles_integration.shadow_preview import MOST_LIGHTS
 from ..ibl_toolkit.mobile.shadow_maps.settings import LARGEST, SMALLEST, STRONGEST
 from . import shadow_watch
 from .shadow_watch import settings_changed
@@ -32,8 +41,26 @@ STORAGES = (
 )
 
 
-def _is_light(preview, thing):
+def _is_light(owner, thing):
     return thing.type == "LIGHT"
+
+
+def _is_another(preview, thing):
+    return thing.type == "LIGHT" and thing not in [row.light for row in preview.lights]
+
+
+def _row_changed(row, context):
+    shadow_watch.light_changed(row.id_data.panorama_shadow_preview, context)
+
+
+def _added(preview, context):
+    """The field is a way into the list, and empty again."""
+    light = preview.another
+    if light is None:
+        return
+    if _is_another(preview, light) and len(preview.lights) < MOST_LIGHTS:
+        preview.lights.add().light = light
+    preview.another = None
 
 
 def _window_changed(preview, context):
@@ -43,8 +70,8 @@ def _window_changed(preview, context):
         settings_changed(preview, context)
 
 
-class PanoramaShadowPreview(bpy.types.PropertyGroup):
-    """How a small device would draw the shadow of one light, shown by a node group in materials."""
+class PanoramaShadowLight(bpy.types.PropertyGroup):
+    """One of the lights of a preview."""
 
     light: PointerProperty(
         type=bpy.types.Object,
@@ -52,7 +79,31 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
         description="Light whose shadow is shown. A sun shines in parallel, every other one from its middle; "
         "sizes are left out, as devices do",
         poll=_is_light,
-        update=shadow_watch.light_changed,
+        update=_row_changed,
+    )
+
+
+class PanoramaShadowSwitchedOff(bpy.types.PropertyGroup):
+    """A light whose own shadow a preview has switched off."""
+
+    light: PointerProperty(type=bpy.types.Light, description="The light's data")
+
+
+class PanoramaShadowPreview(bpy.types.PropertyGroup):
+    """How a small device would draw the shadows of some lights, shown by a node group in materials."""
+
+    lights: CollectionProperty(
+        type=PanoramaShadowLight,
+        description="Lights whose shadows are shown. Of several, surfaces lose the share of those that do "
+        "not reach them",
+    )
+    another: PointerProperty(
+        type=bpy.types.Object,
+        name="Add",
+        description="Choose a light to add it to the list, which holds 4 at most. Surfaces lose the share "
+        "of those that do not reach them: strengths, distances and slants count",
+        poll=_is_another,
+        update=_added,
     )
     method: EnumProperty(
         name="Method",
@@ -148,32 +199,35 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
     )
     replaces_own: BoolProperty(
         name="Instead of Its Own",
-        description="Switch the light's own shadow off while the preview is there, so none is seen twice",
+        description="Switch the lights' own shadows off while the preview is there, so none is seen twice",
         default=True,
         update=shadow_watch.looks_changed,
     )
     keep_current: BoolProperty(
         name="Keep Current",
-        description="Make the map anew when light, objects or settings change, and at each frame. Takes a "
-        "tenth of a second to some seconds each time, by resolution",
+        description="Make the maps anew when lights, objects or settings change, and at each frame. Takes a "
+        "tenth of a second to some seconds for each light, by resolution",
         default=True,
         update=settings_changed,
     )
-    switched_off: PointerProperty(
-        type=bpy.types.Light, description="The light whose own shadow this preview has switched off"
+    switched_off: CollectionProperty(
+        type=PanoramaShadowSwitchedOff,
+        description="The lights whose own shadow this preview has switched off",
     )
-    image: PointerProperty(type=bpy.types.Image, description="The map's texels")
-    group: PointerProperty(type=bpy.types.NodeTree, description="The node group that tests the map")
-    composite_image: PointerProperty(type=bpy.types.Image, description="The map's texels, as floats")
+    group: PointerProperty(type=bpy.types.NodeTree, description="The node group that tests the maps")
     composite_group: PointerProperty(
-        type=bpy.types.NodeTree, description="The group that tests it on pictures"
+        type=bpy.types.NodeTree, description="The group that tests them on pictures"
     )
-    problem: StringProperty(description="What the map cannot show, or why it could not be made")
+    problem: StringProperty(description="What the maps cannot show, or why they could not be made")
+
+
+GROUPS = (PanoramaShadowLight, PanoramaShadowSwitchedOff, PanoramaShadowPreview)
 
 
 def register():
     """Give every scene its preview."""
-    bpy.utils.register_class(PanoramaShadowPreview)
+    for cls in GROUPS:
+        bpy.utils.register_class(cls)
     bpy.types.Scene.panorama_shadow_preview = PointerProperty(
         type=PanoramaShadowPreview, description="Shadows of the scene as a small device has them"
     )
@@ -184,4 +238,5 @@ def unregister():
     """Take them back."""
     shadow_watch.unregister()
     del bpy.types.Scene.panorama_shadow_preview
-    bpy.utils.unregister_class(PanoramaShadowPreview)
+    for cls in reversed(GROUPS):
+        bpy.utils.unregister_class(cls)

@@ -1,6 +1,6 @@
-"""What keeps a scene's shadow preview current when its light, the objects or the settings change.
+"""What keeps a scene's shadow preview current when its lights, the objects or the settings change.
 
-A change only marks the scene; a timer then makes the map, once for all changes since the last, with a pause
+A change only marks the scene; a timer then makes the maps, once for all changes since the last, with a pause
 as long as that took, so that the views stay free. A frame change makes it at once, for renders.
 """
 
@@ -15,19 +15,17 @@ from ..cycles_integration import roles
 from ..cycles_integration.shadow_preview import (
     KINDS,
     composite_nodes,
-    give_back_shadow,
     is_there,
-    light_of,
     nodes_of,
     renew,
-    switch_off_shadow,
+    settle_shadows,
     throwing_names,
 )
 
 SHORTEST_PAUSE = 0.1
 """Between two maps [s]."""
 _marked: set[str] = set()
-"""Names of scenes whose map is out of date."""
+"""Names of scenes whose maps are out of date."""
 _throwing: dict[str, frozenset[str]] = {}
 """Scene → what threw shadows when its map was made."""
 
@@ -52,15 +50,13 @@ def is_waiting() -> bool:
 
 
 def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
-    """Make the map anew and keep what it cannot show; where that fails, the last one stays and it is said."""
+    """Make the maps anew and keep what they cannot show; where that fails, the last stay and it is said."""
     preview = scene.panorama_shadow_preview
     _marked.discard(scene.name)
     _throwing[scene.name] = throwing_names(scene)
-    if light_of(preview) is None:
-        preview.problem = "the preview's light is gone: choose another"
-        return
+    settle_shadows(preview)  # a light may be gone
     try:
-        preview.problem = "; ".join(renew(preview, depsgraph).warnings)
+        preview.problem = "; ".join(renew(preview, depsgraph))
     except ValueError as error:
         preview.problem = str(error)
 
@@ -86,14 +82,11 @@ def looks_changed(preview, context):
     nodes = [node for material in bpy.data.materials for node in nodes_of(material, preview.group)]
     for node in nodes + composite_nodes(preview.id_data, preview.composite_group):
         node.inputs["Darkness"].default_value = preview.darkness
-    if preview.replaces_own and light_of(preview) is not None:
-        switch_off_shadow(preview)
-    else:
-        give_back_shadow(preview)
+    settle_shadows(preview)
 
 
 def light_changed(preview, context):
-    """Another light was chosen."""
+    """Another light was chosen, or one less."""
     looks_changed(preview, context)
     mark(preview.id_data)
 

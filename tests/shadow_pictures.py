@@ -41,30 +41,48 @@ def add_light(kind):
     return made
 
 
+def shown(light, settings, image=None):
+    """A light's map and strength, its texels in an image."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    (made,) = shadow_preview.shadow_maps_of([light], depsgraph, settings)
+    image = shadow_preview.store_map(made, image, "Shadow Map")
+    return shadow_preview.ShownLight(made, image, shadow_preview.strength_of(light, depsgraph))
+
+
 def preview(light, settings):
     """The map of a light, and the group that tests it."""
-    made = shadow_preview.shadow_map_of(light, bpy.context.evaluated_depsgraph_get(), settings)
-    image = shadow_preview.store_map(made, None, "Shadow Map")
-    return made, shadow_preview.build_group(made, image, None, "Shadow Map Preview")
+    one = shown(light, settings)
+    return one.made, shadow_preview.build_group([one], None, "Shadow Map Preview")
 
 
-def show(material, group):
-    """Make a material emit the group's visibility."""
+def maps(scene):
+    """The maps that a scene's preview should have, and their lights' strengths."""
+    depsgraph, preview = bpy.context.evaluated_depsgraph_get(), scene.panorama_shadow_preview
+    lights = shadow_preview.lights_of(preview)
+    made = shadow_preview.shadow_maps_of(lights, depsgraph, shadow_preview.settings_of(preview))
+    return made, np.array([shadow_preview.strength_of(light, depsgraph) for light in lights])
+
+
+def show(material, group, output="Visibility"):
+    """Make a material emit what the group gives."""
     tree = material.node_tree
     tree.nodes.clear()
     node = add(tree, "ShaderNodeGroup", node_tree=group)
-    glow = add(tree, "ShaderNodeEmission", {"Color": node.outputs["Visibility"]})
+    glow = add(tree, "ShaderNodeEmission", {"Color": node.outputs[output]})
     add(tree, "ShaderNodeOutputMaterial", {"Surface": glow.outputs[0]})
 
 
-def rendered(width, engine="CYCLES"):
-    """(shown (n,), points (n, 3) [m], normals (n, 3)) of all pixels, each at its centre."""
+def rendered(width, engine="CYCLES", channels="R", samples=1):
+    """(shown (n,), points (n, 3) [m], normals (n, 3)) of all pixels, each at its centre.
+
+    shown has (n, c) of several channels.
+    """
     scene = bpy.context.scene
     scene.render.engine = engine
     scene.render.resolution_x = scene.render.resolution_y = width
     scene.render.resolution_percentage = 100
     scene.render.filter_size = 0.0
-    scene.cycles.samples, scene.eevee.taa_render_samples = 1, 1
+    scene.cycles.samples, scene.eevee.taa_render_samples = samples, samples
     scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
     capture.sample_pixel_centres(scene)
     layer = bpy.context.view_layer
@@ -72,10 +90,11 @@ def rendered(width, engine="CYCLES"):
     with tempfile.TemporaryDirectory() as folder:
         path = _render(scene, folder)
         parts = OpenEXR.File(path, separate_channels=True).parts  # one per pass from Blender 5.0
-        channels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
-    by_name = {name.split(".", 1)[1]: pixels.ravel() for name, pixels in channels.items()}
+        pixels = {name: channel.pixels for part in parts for name, channel in part.channels.items()}
+    by_name = {name.split(".", 1)[1]: values.ravel() for name, values in pixels.items()}
     vectors = (np.stack([by_name[f"{name}.{k}"] for k in "XYZ"], axis=1) for name in ("Position", "Normal"))
-    return by_name["Combined.R"], *vectors
+    colours = np.stack([by_name[f"Combined.{k}"] for k in channels], axis=1)
+    return colours[:, 0] if len(channels) == 1 else colours, *vectors
 
 
 def composited(width):

@@ -2,7 +2,8 @@
 
 import bpy
 
-from ..operators.shadow_preview import is_there, light_for, preview_missing
+from ..operators.shadow_lights import MOST_LIGHTS, candidates, lights_of
+from ..operators.shadow_preview import is_there, preview_missing
 from .steps import Step
 
 FILTERED = ("pcf", "vsm", "evsm")
@@ -19,16 +20,15 @@ class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
         return is_there(scene.panorama_shadow_preview)
 
     def draw(self, context):
-        """Light, method, offset, looks; and what makes and removes the preview."""
+        """Lights, method, offset, looks; and what makes and removes the preview."""
         layout, preview = self.layout, context.scene.panorama_shadow_preview
         exists = is_there(preview)
-        for names in (("light",), _map_names(preview), _offset_names(preview), ("darkness", "replaces_own")):
+        self._draw_lights(context, preview)
+        for names in (_map_names(preview), _offset_names(preview), ("darkness", "replaces_own")):
             column = layout.column(align=True)
             column.use_property_split, column.use_property_decorate = True, False
             for name in names:
                 column.prop(preview, name)
-        if not exists and preview.light is None and light_for(context) is not None:
-            self.say(context, f"Without a choice it is '{light_for(context).name}'")
         self.say(context, preview_missing(context))
         column = layout.column(align=True)
         column.operator("panorama.preview_shadows", icon="SHADING_RENDERED")
@@ -41,6 +41,23 @@ class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
         if not preview.keep_current:
             row.operator("panorama.renew_shadow_preview", text="Renew")
         layout.operator("panorama.remove_shadow_preview", icon="TRASH")
+
+    def _draw_lights(self, context, preview):
+        """A row for each light; below, what adds one more."""
+        column = self.layout.column(align=True)
+        for index, light in enumerate(preview.lights):
+            row = column.row(align=True)
+            row.prop(light, "light", text="")
+            row.operator("panorama.remove_shadow_light", text="", icon="X").index = index
+        if not lights_of(preview):
+            names = ", ".join(f"'{light.name}'" for light in candidates(context)[:MOST_LIGHTS])
+            self.say(context, f"Without a choice: {names}" if names else "")
+        if len(preview.lights) < MOST_LIGHTS:
+            column = self.layout.column(align=True)
+            column.prop(preview, "another", text="", icon="LIGHT")
+            row = column.row(align=True)
+            for which, text in (("SELECTED", "Add Selected"), ("VISIBLE", "Add All Visible")):
+                row.operator("panorama.add_shadow_lights", text=text).which = which
 
 
 def _map_names(preview):

@@ -10,11 +10,11 @@ from .kinds import GROUP_NODES
 class DepthTest:
     """Writes the test of one method into a node tree.
 
-    place: the projection's outputs. texel: the group that reads the map.
+    place: the projection's outputs. texel: the group that reads the map; name: of its nodes.
     """
 
-    def __init__(self, tree, settings: ShadowSettings, place, texel):
-        self.tree, self.settings, self.place, self.texel = tree, settings, place, texel
+    def __init__(self, tree, settings: ShadowSettings, place, texel, name: str):
+        self.tree, self.settings, self.place, self.texel, self.name = tree, settings, place, texel, name
 
     def visibility(self):
         """The socket of the lit part, 0 to 1, of a point on the map."""
@@ -43,12 +43,8 @@ class DepthTest:
 
     def read(self, column, row, depth=0.0):
         """Both numbers of a texel."""
-        inputs = {"Column": column, "Row": row, "Depth": depth}
-        return list(
-            add(
-                self.tree, GROUP_NODES[self.tree.bl_idname], inputs, node_tree=self.texel, name="Texel"
-            ).outputs
-        )
+        inputs, kind = {"Column": column, "Row": row, "Depth": depth}, GROUP_NODES[self.tree.bl_idname]
+        return list(add(self.tree, kind, inputs, node_tree=self.texel, name=self.name).outputs)
 
     def is_lit(self, column, row):
         """1 where the depth is not beyond the stored one (GL_LEQUAL), else 0."""

@@ -1,23 +1,22 @@
-"""The shadow map of a Blender light."""
+"""The shadow maps of Blender lights."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
 
 from ...ibl_toolkit.mobile.shadow_maps import LightCamera, ShadowMap, ShadowSettings, shadow_map
-from ...ibl_toolkit.mobile.shadow_maps.light_camera import WIDEST
 from .casters import casters_of
 
 
-def shadow_map_of(
-    light: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: ShadowSettings
-) -> ShadowMap:
-    """The map of what throws shadows in the light of an object as it is evaluated.
+def shadow_maps_of(
+    lights: Sequence[bpy.types.Object], depsgraph: bpy.types.Depsgraph, settings: ShadowSettings
+) -> list[ShadowMap]:
+    """The maps of what throws shadows in the light of each object as it is evaluated.
 
-    Raises ValueError where nothing throws shadows, or the light is at it or in a place that is not finite.
+    Raises ValueError where nothing throws shadows, or a light is at it or in a place that is not finite.
     """
     points, triangles = casters_of(depsgraph)
     if not len(triangles):
@@ -25,7 +24,14 @@ def shadow_map_of(
             "nothing throws a shadow: there is no object of the role Synthetic that renders show and whose "
             "ray visibility includes shadows"
         )
-    return shadow_map(points, triangles, light_camera(light, depsgraph, points, settings), settings)
+    maps = []
+    for light in lights:
+        try:
+            camera = light_camera(light, depsgraph, points, settings)
+        except ValueError as error:
+            raise ValueError(f"'{light.name}': {error}") from error
+        maps.append(shadow_map(points, triangles, camera, settings))
+    return maps
 
 
 def light_camera(light, depsgraph, points: np.ndarray, settings: ShadowSettings) -> LightCamera:
@@ -37,13 +43,6 @@ def light_camera(light, depsgraph, points: np.ndarray, settings: ShadowSettings)
     matrix = np.array(light.evaluated_get(depsgraph).matrix_world)
     if light.data.type == "SUN":
         camera = LightCamera.of_sun(matrix[:3, 2], points)
-        most = np.inf
     else:
-        camera, most = LightCamera.of_lamp(matrix[:3, 3], points), WIDEST
-    border = settings.window if settings.method != "hard" else 0
-    wider = settings.resolution / max(settings.resolution - 2 * border, settings.resolution / 2)
-    return replace(
-        camera,
-        half_width=min(camera.half_width * wider, most),
-        half_height=min(camera.half_height * wider, most),
-    )
+        camera = LightCamera.of_lamp(matrix[:3, 3], points)
+    return camera.with_border(settings)

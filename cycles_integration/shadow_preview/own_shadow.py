@@ -1,14 +1,24 @@
-"""The light of a preview, and its own shadow: switched off meanwhile, so that none is seen twice."""
+"""The lights of a preview, and their own shadows: switched off meanwhile, so that none is seen twice."""
 
 from __future__ import annotations
 
 import bpy
 
+MOST_LIGHTS = 4
+"""Of a preview: each has its map, and graphics cards promise a shader no more than 16 images, of which the
+views need some themselves and materials theirs. Each costs a map's time, too."""
 
-def light_of(preview) -> bpy.types.Object | None:
-    """The light that a preview has, as long as the scene has it: a pointer keeps what was deleted."""
-    light = preview.light
-    return light if light is not None and preview.id_data.objects.get(light.name) == light else None
+
+def lights_of(preview) -> list[bpy.types.Object]:
+    """The lights that a preview has and the scene too: pointers keep what was deleted. Each once."""
+    there = (row.light for row in preview.lights if row.light is not None and not is_gone(row))
+    return list(dict.fromkeys(there))[:MOST_LIGHTS]
+
+
+def is_gone(row) -> bool:
+    """Whether the light of one of a preview's rows was deleted."""
+    light = row.light
+    return light is not None and row.id_data.objects.get(light.name) != light
 
 
 def is_there(preview) -> bool:
@@ -16,30 +26,35 @@ def is_there(preview) -> bool:
     return preview.group is not None or preview.composite_group is not None
 
 
-def switch_off_shadow(preview):
-    """Leave the own shadow of the preview's light out, and that of no other light on its behalf.
+def settle_shadows(preview):
+    """Leave the own shadows of the preview's lights out, if it stands for them, and give back all others.
 
     A light that is so already is not touched: else it would count as changed, and its map as out of date.
     """
-    data = light_of(preview).data
-    if preview.switched_off == data and not data.use_shadow:
-        return
-    give_back_shadow(preview)
-    if data.library is None and (data.use_shadow or _is_off_for_others(data, preview)):
-        preview.switched_off = data
-        data.use_shadow = False
+    replaced = [light.data for light in lights_of(preview)] if preview.replaces_own else []
+    if not is_there(preview):
+        replaced = []
+    _give_back(preview, replaced)
+    held = [row.light for row in preview.switched_off]
+    for data in replaced:
+        if data.library is not None or (data in held and not data.use_shadow):
+            continue
+        if data not in held and (data.use_shadow or _is_off_for_others(data, preview)):
+            preview.switched_off.add().light = data
+            held.append(data)
+        data.use_shadow = data.use_shadow and data not in held
 
 
-def give_back_shadow(preview):
-    """Give back the shadow that the preview has switched off, unless another scene's wants it off."""
-    data = preview.switched_off
-    if data is None:
-        return
-    preview.switched_off = None
-    if not _is_off_for_others(data, preview):
-        data.use_shadow = True
+def _give_back(preview, replaced):
+    """Their shadows to lights not replaced any more, unless another scene's preview wants them off."""
+    for index in reversed(range(len(preview.switched_off))):
+        data = preview.switched_off[index].light
+        if data not in replaced:
+            preview.switched_off.remove(index)
+            if data is not None and not _is_off_for_others(data, preview):
+                data.use_shadow = True
 
 
 def _is_off_for_others(data, preview):
     others = (scene.panorama_shadow_preview for scene in bpy.data.scenes if scene != preview.id_data)
-    return any(other.switched_off == data and is_there(other) for other in others)
+    return any(is_there(other) and data in [row.light for row in other.switched_off] for other in others)

@@ -6,7 +6,8 @@ from ..node_trees import add, maths, new_group, output_group, vector_maths
 from .kinds import SHADER
 
 NAME = "Shadow Map Light"
-_OUTPUTS = ("S", "T", "Depth", "Linear Depth", "Inside", "Facing")
+_OUTPUTS = dict.fromkeys(("S", "T", "Depth", "Linear Depth", "Inside", "Facing"), "NodeSocketFloat")
+_OUTPUTS |= {"Light": "NodeSocketVector"}
 _AXES = ("Right", "Up", "Forward")
 _BEFORE_LAMP = 1e-6
 """Distance along forward [m] from which on a lamp sees."""
@@ -17,13 +18,14 @@ def new_projection(perspective: bool, kind: str = SHADER):
 
     S, T: on the map, 0 to 1. Depth: r as a depth buffer has it, Linear Depth: linear in metres, both cut off
     at 0 and 1. Inside: 1 on the map, 0 beside and behind it. Facing: 1 where the normal is towards it.
+    Light: per channel, what it throws on the surface without shadows, as `remaining_light` weighs it.
     The light's numbers are inputs, so that a light that moves compiles no shader anew. Depths are taken from
     the light's place, not with one matrix from the world's origin: it saves digits of 32-bit floats.
     """
     inputs = {"Position": "NodeSocketVector", "Normal": "NodeSocketVector"}
-    inputs |= dict.fromkeys(("Eye", *_AXES), "NodeSocketVector")
+    inputs |= dict.fromkeys(("Eye", *_AXES, "Strength"), "NodeSocketVector")
     inputs |= dict.fromkeys(("Near", "Far"), "NodeSocketFloat")
-    tree = new_group(NAME, kind, dict.fromkeys(_OUTPUTS, "NodeSocketFloat"), inputs)
+    tree = new_group(NAME, kind, _OUTPUTS, inputs)
     given = add(tree, "NodeGroupInput").outputs
     away = vector_maths(tree, "SUBTRACT", given["Position"], given["Eye"])
     right, up, forward = (vector_maths(tree, "DOT_PRODUCT", away, given[k]) for k in _AXES)
@@ -36,13 +38,15 @@ def new_projection(perspective: bool, kind: str = SHADER):
         depth = maths(tree, "MULTIPLY", maths(tree, "DIVIDE", given["Far"], ranges), nearness)
         inside = maths(tree, "GREATER_THAN", forward, _BEFORE_LAMP)
         to_light = vector_maths(tree, "SUBTRACT", given["Eye"], given["Position"])
+        cubed = maths(tree, "POWER", vector_maths(tree, "LENGTH", to_light), 3.0)
     else:
-        depth, inside = linear, 1.0
+        depth, inside, cubed = linear, 1.0, 1.0
         to_light = vector_maths(tree, "SUBTRACT", (0, 0, 0), given["Forward"])
     for side in (right, up):
         within = maths(tree, "LESS_THAN", maths(tree, "ABSOLUTE", side), 0.5)
         inside = maths(tree, "MULTIPLY", inside, within)
-    facing = maths(tree, "GREATER_THAN", vector_maths(tree, "DOT_PRODUCT", to_light, given["Normal"]), 0.0)
+    slant = vector_maths(tree, "DOT_PRODUCT", to_light, given["Normal"])
+    received = maths(tree, "DIVIDE", maths(tree, "MAXIMUM", slant, 0.0), cubed)  # cosine / distance²
     output_group(
         tree,
         S=maths(tree, "ADD", right, 0.5),
@@ -50,13 +54,14 @@ def new_projection(perspective: bool, kind: str = SHADER):
         Depth=_cut(tree, depth),
         Linear_Depth=_cut(tree, linear),
         Inside=inside,
-        Facing=facing,
+        Facing=maths(tree, "GREATER_THAN", slant, 0.0),
+        Light=vector_maths(tree, "MULTIPLY", given["Strength"], received),
     )
     return tree
 
 
-def light_numbers(camera) -> dict:
-    """Input → value of a projection, of a light camera."""
+def light_numbers(camera, strength) -> dict:
+    """Input → value of a projection, of a light camera and a light's strength (3,)."""
     right, up, forward = camera.axes
     return {
         "Eye": camera.eye.tolist(),
@@ -65,6 +70,7 @@ def light_numbers(camera) -> dict:
         "Forward": forward.tolist(),
         "Near": camera.near,
         "Far": camera.far,
+        "Strength": strength.tolist(),
     }
 
 

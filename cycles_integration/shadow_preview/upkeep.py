@@ -1,25 +1,26 @@
-"""A scene's preview, from what its property group says: map and group made, renewed, and taken away."""
+"""A scene's preview, from what its property group says: maps and groups made, renewed, and taken away."""
 
 from __future__ import annotations
 
 import bpy
 
-from ...ibl_toolkit.mobile.shadow_maps import ShadowMap, ShadowSettings
+from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings
 from ...ibl_toolkit.mobile.shadow_maps.suggestion import exponent, offsets, reduction
 from .composite import take_off_picture
-from .group import aim_group, build_group, fits, refuse_wide
+from .group import ShownLight, aim_group, build_group, fits, images_of, refuse_wide
 from .kinds import COMPOSITOR, SHADER
-from .light_view import shadow_map_of
+from .light_view import shadow_maps_of
 from .map_image import store_map
-from .own_shadow import give_back_shadow
+from .own_shadow import is_gone, lights_of, settle_shadows
 from .receivers import take_off
+from .strength import strength_of
 
 MAP = "Shadow Map"
-KINDS_OF = {
-    SHADER: ("image", "group", "Shadow Map Preview"),
-    COMPOSITOR: ("composite_image", "composite_group", "Shadow Map Composite"),
+GROUPS = {
+    SHADER: ("group", "Shadow Map Preview"),
+    COMPOSITOR: ("composite_group", "Shadow Map Composite"),
 }
-"""Kind of node tree → the preview's properties for its image and group, and the group's name."""
+"""Kind of node tree → the preview's property for its group, and the group's name."""
 
 
 def settings_of(preview) -> ShadowSettings:
@@ -46,47 +47,64 @@ def settings_of(preview) -> ShadowSettings:
     return settings
 
 
-def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> ShadowMap:
-    """Make the map of the preview's light anew, and what shows it as far as that has to change.
+def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
+    """Make the maps of the preview's lights anew, and what shows them as far as that has to change.
 
-    more: of KINDS_OF, those groups that the preview shall have beside the ones that it has.
-    Raises ValueError, with all as it was, where no map can be made.
+    more: of GROUPS, those that the preview shall have beside the ones that it has.
+    Returns what the maps cannot show, in words.
+    Raises ValueError, with all as it was, where there is no light or no map can be made.
     """
-    made = shadow_map_of(preview.light, depsgraph, settings_of(preview))
-    for kind, (image_name, group_name, name) in KINDS_OF.items():
-        if kind in more or getattr(preview, group_name) is not None:
-            image = store_map(made, getattr(preview, image_name), MAP, as_floats=kind == COMPOSITOR)
-            _keep(preview, image_name, image)
-            group = getattr(preview, group_name)
-            if fits(group, made, image):
-                aim_group(group, made)
-            else:
-                _keep(preview, group_name, build_group(made, image, group, name, kind))
-    return made
+    lights = lights_of(preview)
+    if not lights:
+        raise ValueError("the preview's light is gone: choose another")
+    maps = shadow_maps_of(lights, depsgraph, settings_of(preview))
+    strengths = [strength_of(light, depsgraph) for light in lights]
+    for kind, (property_name, name) in GROUPS.items():
+        group = getattr(preview, property_name)
+        if kind in more or group is not None:
+            made = _renewed(group, maps, strengths, kind, name)
+            if made != group:  # else the scene would count as changed
+                setattr(preview, property_name, made)
+    gone = [f"'{row.light.name}' is gone from the scene" for row in preview.lights if is_gone(row)]
+    said = zip(lights, maps, strict=True)
+    return gone + [f"'{light.name}': {words}" for light, made in said for words in made.warnings]
 
 
 def discard(preview):
-    """Take the preview out of materials, compositor and file; its light has its own shadow again."""
-    for image_name, group_name, _ in KINDS_OF.values():
-        image, group = getattr(preview, image_name), getattr(preview, group_name)
-        setattr(preview, image_name, None)
-        setattr(preview, group_name, None)
+    """Take the preview out of materials, compositor and file; its lights have their own shadows again."""
+    for property_name, _ in GROUPS.values():
+        group = getattr(preview, property_name)
+        setattr(preview, property_name, None)
         if group is not None:
             _remove(group, preview.id_data)
-        if image is not None:
-            bpy.data.images.remove(image)
-    give_back_shadow(preview)
+    settle_shadows(preview)
 
 
-def _keep(preview, name, value):
-    if getattr(preview, name) != value:  # else the scene would count as changed
-        setattr(preview, name, value)
+def _renewed(group, maps, strengths, kind, name):
+    """A group, the one given if there is one, that shows maps; it has no more images than these."""
+    images = images_of(group)
+    spare = images[len(maps) :]
+    images += [None] * (len(maps) - len(images))
+    shown = []
+    for made, strength, image in zip(maps, strengths, images, strict=False):
+        stored = store_map(made, image, MAP, as_floats=kind == COMPOSITOR)
+        shown.append(ShownLight(made, stored, strength))
+    if fits(group, shown):
+        aim_group(group, shown)
+    else:
+        group = build_group(shown, group, name, kind)
+    for image in spare:
+        bpy.data.images.remove(image)
+    return group
 
 
 def _remove(group, scene):
     for material in bpy.data.materials:
         take_off(material, group)
     take_off_picture(scene, group)
+    images = images_of(group)
     inner = {node.node_tree for node in group.nodes if node.type == "GROUP"}
     for tree in (group, *filter(None, inner)):
         bpy.data.node_groups.remove(tree)
+    for image in images:
+        bpy.data.images.remove(image)

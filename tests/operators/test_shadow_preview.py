@@ -28,7 +28,7 @@ def select(bpy, *names):
 
 
 def texels(scene):
-    image = scene.panorama_shadow_preview.image
+    (image,) = shadow_preview.images_of(scene.panorama_shadow_preview.group)
     values = np.empty(4 * image.size[0] * image.size[1], np.float32)
     image.pixels.foreach_get(values)
     return values
@@ -48,15 +48,16 @@ def test_materials_wear_the_preview_and_give_it_back(scene):
     assert bpy.ops.panorama.preview_shadows() == {"FINISHED"}
     preview = scene.panorama_shadow_preview
     (node,) = shadow_preview.nodes_of(material, preview.group)
-    assert preview.light.name == "SUN"
-    assert not preview.light.data.use_shadow
+    (row,) = preview.lights
+    assert row.light.name == "SUN"
+    assert not row.light.data.use_shadow
     assert bpy.ops.panorama.preview_shadows() == {"FINISHED"}
     assert len(shadow_preview.nodes_of(material, preview.group)) == 1
     preview.darkness = 0.4
     assert node.inputs["Darkness"].default_value == pytest.approx(0.4)
     assert bpy.ops.panorama.remove_shadow_preview() == {"FINISHED"}
     assert (links(material), counts()) == (before, blocks)
-    assert preview.light.data.use_shadow
+    assert preview.lights[0].light.data.use_shadow
     assert preview.group is None
 
 
@@ -69,8 +70,7 @@ def test_what_is_rendered_is_darkened_where_numpy_says(scene):
     scene.panorama_shadow_preview.darkness = 0.6
     bpy.ops.panorama.preview_shadows()
     shown, points, normals = shadow_pictures.rendered(48)
-    preview = scene.panorama_shadow_preview
-    made = shadow_preview.renew(preview, bpy.context.evaluated_depsgraph_get())
+    (made,), _ = shadow_pictures.maps(scene)
     off = shadow_pictures.differences(made, 1 - (1 - shown) / 0.6, points, normals)
     assert np.sort(off)[-3] <= 1 / 255
 
@@ -94,7 +94,7 @@ def test_the_compositor_darkens_the_picture_likewise(scene, storage):
     bpy.data.objects["ball"].location.x += 0.1
     bpy.context.view_layer.update()
     shown = shadow_pictures.composited(48)
-    made = shadow_preview.renew(preview, bpy.context.evaluated_depsgraph_get())
+    (made,), _ = shadow_pictures.maps(scene)
     there = np.linalg.norm(normals, axis=1) > 0.5
     assert 0.1 < there.mean() < 0.9
     off = shadow_pictures.differences(made, 1 - (1 - shown) / 0.6, points, normals)
@@ -182,10 +182,11 @@ def test_another_size_and_storage_keep_one_image(scene):
     for storage, resolution in (("float32", 32), ("8+8", 48), ("16+16", 64)):
         preview.storage, preview.resolution = storage, resolution
         shadow_watch.work_off()
-        assert tuple(preview.image.size) == (resolution, resolution)
-        assert preview.image.is_float == (storage == "float32")
+        (image,) = shadow_preview.images_of(preview.group)
+        assert tuple(image.size) == (resolution, resolution)
+        assert image.is_float == (storage == "float32")
         assert counts() == blocks
-    assert preview.image.name == "Shadow Map"
+    assert image.name == "Shadow Map"
 
 
 def test_the_saved_file_has_the_map(scene, tmp_path):
@@ -210,7 +211,7 @@ def test_what_is_refused_says_why_and_changes_nothing(scene):
     with pytest.raises(RuntimeError, match="nothing throws a shadow"):
         bpy.ops.panorama.preview_shadows()
     assert counts() == blocks
-    assert preview.light is None
+    assert not preview.lights
     select(bpy, "SUN")
     assert not bpy.ops.panorama.preview_shadows.poll()
     bpy.data.objects.remove(bpy.data.objects["SUN"])
@@ -266,12 +267,12 @@ def test_real_things_throw_no_shadow_and_instances_do(scene):
 def test_a_sun_shines_along_its_axis_and_a_lamp_from_its_place(scene):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     settings = shadow_preview.settings_of(scene.panorama_shadow_preview)
-    sun = shadow_preview.shadow_map_of(bpy.data.objects["SUN"], depsgraph, settings)
+    (sun,) = shadow_preview.shadow_maps_of([bpy.data.objects["SUN"]], depsgraph, settings)
     np.testing.assert_allclose(-sun.camera.axes[2], Vector(shadow_pictures.SUN).normalized(), atol=1e-6)
     lamp = shadow_pictures.add_light("AREA")
     lamp.scale = (2, 3, 4)
     bpy.context.view_layer.update()
-    made = shadow_preview.shadow_map_of(lamp, bpy.context.evaluated_depsgraph_get(), settings)
+    (made,) = shadow_preview.shadow_maps_of([lamp], bpy.context.evaluated_depsgraph_get(), settings)
     np.testing.assert_allclose(made.camera.eye, shadow_pictures.LAMP, atol=1e-6)
     assert made.camera.perspective
 
@@ -296,14 +297,15 @@ def at_rest():
 
 def test_one_scenes_preview_leaves_the_lights_of_another_alone(scene):
     bpy.ops.panorama.preview_shadows()
-    first = scene.panorama_shadow_preview.light.data
+    first = scene.panorama_shadow_preview.lights[0].light.data
     other = scene.copy()
     for thing in list(other.collection.objects):
         other.collection.objects.unlink(thing)
     bpy.context.window.scene = other
     preview = other.panorama_shadow_preview
-    for name in ("light", "switched_off", "image", "group"):
-        setattr(preview, name, None)
+    preview.lights.clear()
+    preview.switched_off.clear()
+    preview.group = None
     shadow_pictures.still_life()
     second = shadow_pictures.add_light("SUN").data
     bpy.ops.panorama.composite_shadows()

@@ -79,19 +79,20 @@ def test_eevee_shows_the_same(still_life):
 
 
 def test_a_light_that_moved_needs_no_new_nodes(still_life):
-    light = shadow_pictures.add_light("SUN")
-    made, group = shadow_pictures.preview(light, ShadowSettings("vsm", MAP))
-    image = bpy.data.images["Shadow Map"]
+    light, settings = shadow_pictures.add_light("SUN"), ShadowSettings("vsm", MAP)
+    before = shadow_pictures.shown(light, settings)
+    group = shadow_preview.build_group([before], None, "Shadow Map Preview")
     names = [node.name for node in group.nodes]
     light.rotation_euler.x += 0.3
     bpy.context.view_layer.update()
-    moved = shadow_preview.shadow_map_of(light, bpy.context.evaluated_depsgraph_get(), made.settings)
-    assert shadow_preview.store_map(moved, image, "Shadow Map") == image
-    assert shadow_preview.fits(group, moved, image)
-    shadow_preview.aim_group(group, moved)
+    moved = shadow_pictures.shown(light, settings, before.image)
+    assert moved.image == before.image
+    assert shadow_preview.fits(group, [moved])
+    shadow_preview.aim_group(group, [moved])
     assert [node.name for node in group.nodes] == names
     shadow_pictures.show(still_life, group)
-    assert np.sort(shadow_pictures.differences(moved, *shadow_pictures.rendered(WIDTH)))[-1 - TIES] <= EQUAL
+    off = shadow_pictures.differences(moved.made, *shadow_pictures.rendered(WIDTH))
+    assert np.sort(off)[-1 - TIES] <= EQUAL
 
 
 def test_a_window_too_wide_for_nodes_is_refused(still_life):
