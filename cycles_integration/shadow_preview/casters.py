@@ -11,6 +11,10 @@ from .. import roles
 
 KINDS = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 """Types of objects that have triangles."""
+NOTHING_THROWS = (
+    "nothing throws a shadow: there is no object of the role Synthetic that renders show and whose ray "
+    "visibility includes shadows"
+)
 
 
 def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
@@ -52,13 +56,16 @@ def shown_instances(
     depsgraph: bpy.types.Depsgraph, kinds: Collection[str]
 ) -> Iterator[bpy.types.DepsgraphObjectInstance]:
     """Each instance of some types of objects that renders show; it is there for its step of the loop only."""
-    hidden = _hidden(depsgraph.view_layer)
+    hidden, parts = _hidden(depsgraph.view_layer), {}
     for instance in depsgraph.object_instances:
         own = instance.object.original
         # An instance is where its parent is.
         stands = instance.parent.original if instance.is_instance else own
-        if own.type in kinds and instance.show_self and stands not in hidden and not own.hide_render:
-            yield instance
+        if own.type not in kinds or not instance.show_self or stands in hidden:
+            continue
+        if own.hide_render or stands.hide_render or own in _hidden_parts(stands, parts):
+            continue
+        yield instance
 
 
 def throws_shadow(thing: bpy.types.Object) -> bool:
@@ -94,6 +101,31 @@ def _hidden(view_layer):
 
     sort_out(view_layer.layer_collection, False)
     return hidden - shown
+
+
+def _hidden_parts(thing, known):
+    """Objects that an instance of a collection has, itself or by instances in it, but renders leave out.
+
+    known: what was found, by collection.
+    """
+    whole = thing.instance_collection
+    if whole is None or whole in known:
+        return known.get(whole, ())
+    hidden, shown = set(), set()
+
+    def sort_out(part, is_hidden, above):
+        is_hidden = is_hidden or part.hide_render
+        for one in part.objects:
+            (hidden if is_hidden else shown).add(one)
+            inner = one.instance_collection
+            if inner is not None and inner not in above:
+                sort_out(inner, is_hidden or one.hide_render, {*above, inner})
+        for child in part.children:
+            sort_out(child, is_hidden, above)
+
+    sort_out(whole, False, {whole})
+    known[whole] = hidden - shown
+    return known[whole]
 
 
 def numbers(items, name: str, kind) -> np.ndarray:

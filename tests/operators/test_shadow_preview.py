@@ -366,6 +366,34 @@ def test_collections_that_renders_leave_out_throw_no_shadow(scene):
     assert len(shadow_preview.casters_of(bpy.context.evaluated_depsgraph_get())[1]) == whole - 12
 
 
+def test_parts_of_instances_that_renders_leave_out_throw_no_shadow(scene):
+    """A sub-collection of an instanced collection, however deep; and the instance as a whole."""
+    box, outer, inner = bpy.data.objects["Cube"], *(bpy.data.collections.new(name) for name in "ab")
+    outer.children.link(inner)
+    inner.objects.link(box)
+    instances = []
+    for name, collection in (("first", outer), ("second", bpy.data.collections.new("c"))):
+        instances.append(bpy.data.objects.new(name, None))
+        instances[-1].instance_type, instances[-1].instance_collection = "COLLECTION", collection
+    instances[1].instance_collection.objects.link(instances[0])
+    for one in instances:
+        scene.collection.objects.link(one)
+
+    def count():
+        bpy.context.view_layer.update()
+        return len(shadow_preview.casters_of(bpy.context.evaluated_depsgraph_get())[1]) // 12
+
+    whole = count()
+    instances[1].hide_render = True
+    assert count() == whole - 1
+    inner.hide_render = True
+    assert count() == whole - 2
+    instances[1].hide_render = False
+    assert count() == whole - 2
+    outer.objects.link(box)
+    assert count() == whole
+
+
 def test_settings_by_themselves_are_those_that_were_measured(scene):
     preview = scene.panorama_shadow_preview
     for method, storage, expected in (("vsm", "8+8", 0.3), ("evsm", "16+16", 0.05), ("evsm", "8+8", 0.15)):
