@@ -9,7 +9,7 @@ import bpy
 from mathutils import Matrix
 
 from . import capture, view_layers
-from .place import is_here
+from .place import place_in
 
 
 def frame_of(scene: bpy.types.Scene, origin: tuple[float, float, float] | None = None) -> Matrix:
@@ -25,18 +25,12 @@ def frame_of(scene: bpy.types.Scene, origin: tuple[float, float, float] | None =
             raise ValueError(f"origin {tuple(origin)} must be three finite numbers")
         return Matrix.Translation(origin)
     scene.view_layers[0].update()
-    place = _place_in(scene)
+    place = place_in(scene)
     if place is not None:
         return place.origin.matrix_world.copy()
     if scene.camera is None:
         raise ValueError(f"scene '{scene.name}' has no active camera: give the origin")
     return Matrix.Translation(scene.camera.matrix_world.translation)
-
-
-def _place_in(scene):
-    """The scene's place, if there is one."""
-    place = getattr(scene, "panorama_place", None)
-    return place if place is not None and place.origin is not None and is_here(place) else None
 
 
 @contextlib.contextmanager
@@ -63,7 +57,7 @@ def rendered_scene(scene: bpy.types.Scene, world_from_panorama: Matrix):
 
 
 def _set_up_layer(copied):
-    place = _place_in(copied)
+    place = place_in(copied)
     if place is not None:
         view_layers.remove_ours(copied)
         for layer in copied.view_layers:

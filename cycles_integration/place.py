@@ -56,6 +56,12 @@ def place_of(scene: bpy.types.Scene) -> Place:
     return place
 
 
+def place_in(scene: bpy.types.Scene) -> Place | None:
+    """The scene's place as it stands, or None where it has none."""
+    place = getattr(scene, "panorama_place", None)
+    return place if place is not None and place.origin is not None and is_here(place) else None
+
+
 def is_here(place: Place) -> bool:
     """Whether a place stands in its scene: one made with the settings of another only knows of its place."""
     return place.collection in place.id_data.collection.children_recursive

@@ -3,18 +3,17 @@
 import os
 import shutil
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import cv2
 import numpy as np
 import shadow_scenes
 
-from expanded_panoramas.ibl_toolkit.equirectangular import sample
 from expanded_panoramas.ibl_toolkit.images.png import linear_from_srgb, srgb_from_linear
-from expanded_panoramas.ibl_toolkit.layers.raster.rasterizer import rasterize
 from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
-from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import LightCamera, remaining_light, shadow_map
+from expanded_panoramas.ibl_toolkit.mobile.page_picture import page_picture
+from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import LightCamera
 from expanded_panoramas.ibl_toolkit.mobile.shadow_scene import SceneLight, SceneMesh, ShadowScene
 from expanded_panoramas.ibl_toolkit.mobile.web_page import Background, write_page
 
@@ -138,26 +137,12 @@ def expected(scene, settings, background, view, jpeg=b""):
 
     jpeg: the background as the page has it, else it is taken as it is.
     """
-    parts = [mesh.with_normals() for mesh in scene.meshes]
-    points, triangles = _joined([(p.astype(np.float32).astype(float), t) for p, _, t in parts])
-    normals = np.concatenate([n for _, n, _ in parts])
-    rays = view.directions().reshape(-1, 3)
-    seen = rasterize(points, triangles, view).triangle.ravel()
-    hit, mesh = seen >= 0, np.repeat(np.arange(len(parts)), [len(t) for _, _, t in parts])
-    which = mesh[seen[hit]]
-    at, upright = _where(points[triangles[seen[hit]]], normals[triangles[seen[hit]]], view.eye, rays[hit])
-    colours = _background(background, jpeg)
-    linear = colours(rays, np.arange(len(rays)))
-    whole, kept = _light(scene, settings, points, triangles, at, upright)
-    share = np.where(whole > 0, kept / np.maximum(whole, 1e-30), 1)
-    shown = colours(at - background.origin, np.flatnonzero(hit)) * share
-    albedo = np.array([m.albedo for m in scene.meshes])[which]
-    new = np.array([m.role == "synthetic" for m in scene.meshes])[which]
-    linear[hit] = np.where(new[:, None], albedo / np.pi * kept * background.exposure, shown)
-    labels = np.zeros((len(rays), 4))
-    labels[hit] = np.column_stack([10 * (which + 1), upright])
-    shape = view.height, view.width
-    return 255 * srgb_from_linear(linear).reshape(*shape, 3), _outlines(labels.reshape(*shape, 4))
+    if jpeg:
+        codes = cv2.cvtColor(cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
+        background = replace(background, image=linear_from_srgb(codes / 255) / background.exposure)
+    made = page_picture(scene, settings, background, view)
+    labels = np.concatenate([10.0 * (made.mesh[..., None] + 1), made.normals], axis=-1)
+    return 255 * srgb_from_linear(made.radiance * background.exposure), _outlines(labels)
 
 
 def _outlines(labels):
@@ -165,46 +150,3 @@ def _outlines(labels):
     square = np.ones((3, 3), np.uint8)
     spread = cv2.dilate(labels, square) - cv2.erode(labels, square)
     return (spread > _TURN).any(axis=2)
-
-
-def _joined(meshes):
-    first = np.cumsum([0, *(len(points) for points, _ in meshes)])
-    return (
-        np.concatenate([points for points, _ in meshes]),
-        np.concatenate([triangles + start for (_, triangles), start in zip(meshes, first, strict=False)]),
-    )
-
-
-def _where(corners, normals, eye, rays):
-    """Places (n, 3) where rays meet triangles, and the normals between those of the corners."""
-    one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    matrix = np.stack([one, two, -rays], axis=-1)
-    share = np.linalg.solve(matrix, (eye - corners[:, 0])[..., None])[..., 0]
-    weights = np.stack([1 - share[:, 0] - share[:, 1], share[:, 0], share[:, 1]], axis=1)
-    upright = (normals * weights[..., None]).sum(axis=1)
-    return eye + share[:, 2:] * rays, upright / np.linalg.norm(upright, axis=1, keepdims=True)
-
-
-def _background(background, jpeg):
-    """A function of directions (n, 3) and pixels (n,): linear colours (n, 3)."""
-    if jpeg:
-        codes = cv2.cvtColor(cv2.imdecode(np.frombuffer(jpeg, np.uint8), cv2.IMREAD_COLOR), cv2.COLOR_BGR2RGB)
-        image = linear_from_srgb(codes / 255)
-    else:
-        image = background.image * background.exposure
-    if background.kind == "photo":
-        return lambda directions, pixels: image.reshape(-1, 3)[pixels]
-    return lambda directions, pixels: sample(image, directions @ background.world_from_panorama).astype(float)
-
-
-def _light(scene, settings, points, triangles, at, normals):
-    """Irradiance (n, 3) without shadows, and with them."""
-    maps = [shadow_map(points, triangles, light.camera, settings) for light in scene.lights]
-    strengths = np.array([light.strength for light in scene.lights])
-    whole = np.zeros((len(at), 3))
-    for light in scene.lights:
-        to_light, distance = light.camera.to_light(at)
-        cosine = np.maximum((to_light * normals).sum(axis=1), 0)
-        whole += (cosine / distance**2)[:, None] * np.array(light.strength)
-    kept = whole * remaining_light(maps, strengths, at, normals)
-    return whole + np.array(scene.ambient), kept + np.array(scene.ambient)

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...ibl_toolkit.mobile.shadow_maps import LightCamera, ShadowMap, ShadowSettings, shadow_map
-from .casters import casters_of
+from .casters import NOTHING_THROWS, casters_of
 
 
 def shadow_maps_of(
@@ -20,10 +20,7 @@ def shadow_maps_of(
     """
     points, triangles = casters_of(depsgraph)
     if not len(triangles):
-        raise ValueError(
-            "nothing throws a shadow: there is no object of the role Synthetic that renders show and whose "
-            "ray visibility includes shadows"
-        )
+        raise ValueError(NOTHING_THROWS)
     maps = []
     for light in lights:
         try:

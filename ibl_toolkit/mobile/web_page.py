@@ -101,12 +101,7 @@ def write_page(
 
     Raises: ValueError for no settings, NaN in the background, and a photo of another shape than the camera's.
     """
-    height, width = np.shape(background.image)[:2]
-    if background.kind == "photo" and (width, height) != (camera.width, camera.height):
-        raise ValueError(
-            f"{path}: photo of {width} x {height} px must be as large as the camera's picture, "
-            f"{camera.width} x {camera.height} px"
-        )
+    refuse_other_size(background, camera, path)
     text = Template(_source("page.html")).substitute(
         title=escape(title),
         background=_base64(background.jpeg(path)),
@@ -117,6 +112,16 @@ def write_page(
     )
     with replacing(Path(path)) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def refuse_other_size(background: Background, camera: Pinhole, path):
+    """Raise ValueError for a photo of another size than the picture of the camera that took it."""
+    height, width = np.shape(background.image)[:2]
+    if background.kind == "photo" and (width, height) != (camera.width, camera.height):
+        raise ValueError(
+            f"{path}: photo of {width} x {height} px must be as large as the camera's picture, "
+            f"{camera.width} x {camera.height} px"
+        )
 
 
 def _modules():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,7 +49,7 @@ def shadow_map(
         STEPS[settings.storage],
     )
     texels = _OF[settings.method].texels(depth, camera, settings)
-    return ShadowMap(camera, settings, texels, tuple(_warnings(points, triangles.reshape(-1, 3), camera)))
+    return ShadowMap(camera, settings, texels, tuple(warnings_of(points, triangles.reshape(-1, 3), camera)))
 
 
 def visibility(shadow_map: ShadowMap, points: np.ndarray, normals: np.ndarray | None = None) -> np.ndarray:
@@ -104,7 +104,8 @@ def _refuse(points, triangles):
         )
 
 
-def _warnings(points, triangles, camera):
+def warnings_of(points: np.ndarray, triangles: np.ndarray, camera: LightCamera) -> Iterator[str]:
+    """What a map of triangles (T, 3), indices of points (V, 3) [m], cannot show, a sentence each."""
     if not len(triangles):
         yield "the scene is empty: everything is lit"
         return

@@ -1,0 +1,10 @@
+"""A Blender scene as the page of a phone's shadows shows it.
+
+found = page_scene(scene, depsgraph, kinds)            meshes, lights, ambient light; camera; background
+write_page("page.html", found.scene, kinds, found.background, found.camera)
+"""
+
+from .lighting import SOURCES
+from .page_scene import PageScene, page_scene
+
+__all__ = ["SOURCES", "PageScene", "page_scene"]

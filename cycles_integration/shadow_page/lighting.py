@@ -1,0 +1,102 @@
+"""Which lights a page has, and its light from all around: of the scene, of its panorama, or of both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
+
+from ...ibl_toolkit.light.light_map import LUMINANCE
+from ...ibl_toolkit.mobile.device_lights import device_lights, floor_irradiance
+from ...ibl_toolkit.mobile.shadow_scene import SceneMesh
+from ...ibl_toolkit.mobile.web_page import Background
+from .. import maps
+from .camera import world_colour
+from .lights import PageLight, own_lights
+
+SOURCES = ("auto", "scene", "panorama", "both")
+"""Where the lights come from; auto: the scene's own, or without any the panorama's."""
+LIGHTS_WIDTH = 1024
+"""A panorama's lights are looked for on a map of at most this width [px]."""
+
+
+def lighting_of(
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+    panorama: Background | None,
+    meshes: Sequence[SceneMesh],
+    light_from: str,
+    most: int,
+) -> tuple[list[PageLight], np.ndarray, list[str]]:
+    """The strongest lights on what throws shadows, ``most`` at most; ambient light (3,); warnings.
+
+    panorama: that of the scene's place. light_from: of SOURCES. Lights that there are too many of brighten
+    the ambient light. A sun that was picked from the panorama stands for its part of it.
+
+    Raises ValueError without any light, and for a panorama's without one.
+    """
+    points = np.concatenate([mesh.points for mesh in meshes if mesh.throws])
+    own = own_lights(depsgraph, points)
+    if light_from == "auto":
+        light_from = "scene" if own or panorama is None else "panorama"
+    if light_from != "scene" and panorama is None:
+        raise ValueError(f"scene '{scene.name}' has no panorama whose lights could be taken")
+    if light_from == "scene":
+        found, (ambient, warnings) = own, _ambient(scene, panorama, own, points)
+    else:
+        found, ambient, warnings = _of_panorama(panorama, points, meshes, most)
+    if light_from == "both":
+        found += [one for one in own if not one.is_picked]
+    if not found:
+        raise ValueError("no light shines on what throws shadows: add one, or show it in renders")
+    middle = _middle(points)
+    found = sorted(found, key=lambda one: -float(one.irradiance(middle) @ LUMINANCE))
+    if found[most:]:
+        names = ", ".join(f"'{one.name}'" for one in found[most:])
+        warnings = [*warnings, f"{names}: more than {most} lights, so they only brighten and throw no shadow"]
+    left = sum((one.on_floor(middle) for one in found[most:]), np.zeros(3))
+    return found[:most], ambient + left, warnings
+
+
+def _of_panorama(panorama, points, meshes, most):
+    found = device_lights(
+        maps.shrink(panorama.image, LIGHTS_WIDTH),
+        points,
+        most,
+        panorama.origin,
+        panorama.world_from_panorama,
+        _reach(panorama, [mesh for mesh in meshes if mesh.role == "support"]),
+    )
+    lights = [PageLight(f"panorama {k}", light) for k, light in enumerate(found.lights, 1)]
+    return lights, np.array(found.ambient), list(found.warnings)
+
+
+def _reach(panorama, surfaces):
+    """Distances (n,) [m] of the real surfaces in directions (n, 3) of a panorama; None without surfaces."""
+    if not surfaces:
+        return None
+    trees = [BVHTree.FromPolygons(one.points.tolist(), one.triangles.tolist()) for one in surfaces]
+    origin = Vector(panorama.origin)
+
+    def distance(direction):
+        hits = (tree.ray_cast(origin, Vector(direction))[3] for tree in trees)
+        return min((hit for hit in hits if hit is not None), default=np.inf)
+
+    return lambda directions: np.array([distance(one) for one in directions @ panorama.world_from_panorama.T])
+
+
+def _ambient(scene, panorama, own, points):
+    """Irradiance (3,) of an upward floor besides the scene's own lights, and warnings."""
+    if panorama is None:
+        colour, warnings = world_colour(scene)
+        return np.zeros(3) if colour is None else np.pi * colour, warnings
+    whole = floor_irradiance(maps.shrink(panorama.image, LIGHTS_WIDTH), panorama.world_from_panorama[2])
+    picked = sum((one.on_floor(_middle(points)) for one in own if one.is_picked), np.zeros(3))
+    return np.maximum(whole - picked, 0), []
+
+
+def _middle(points):
+    return (points.min(axis=0) + points.max(axis=0)) / 2
