@@ -6,9 +6,7 @@ import math
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-import numpy as np
-
-from ..ibl_toolkit.images import replacing, write_exr
+from ..ibl_toolkit.images import replacing
 from ..ibl_toolkit.mobile.probe import (
     DICTIONARY,
     DOMAINS,
@@ -23,6 +21,7 @@ from ..ibl_toolkit.mobile.probe import (
     place_ball,
     read_photo,
     unwrap,
+    write_unwrapped,
 )
 from .job import naming, refuse_output
 from .options import positive, whole_number
@@ -242,6 +241,5 @@ def _write_panorama(photo, camera, ball, pose, options):
     width = options.width or max(natural_width(camera, ball), 4)
     turn = None if pose is None else pose.marker_from_camera
     found = unwrap(photo, camera, ball, width, turn, options.surroundings or math.inf)
-    channels = {name: np.ascontiguousarray(found.radiance[..., k]) for k, name in enumerate("RGB")}
-    write_exr(options.unwrap, {**channels, "A": found.known.astype(np.float32)})
+    write_unwrapped(found, options.unwrap)
     return {"file": str(options.unwrap), "size": [width, width // 2], "known": float(found.known.mean())}

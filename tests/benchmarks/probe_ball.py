@@ -48,8 +48,8 @@ DEFINITIONS = (
     f"of lights; missed: share of the lights that none is within {MISSED_DEG} degrees of; doubted: share of "
     "the photographs with a warning that a direction is uncertain. "
     f"Ball of {DIAMETER} px, noise {NOISE} of the median (growing with the root of the signal), blur {BLUR} "
-    f"px, {LIGHTS} light, unless said otherwise; 8-bit sRGB, with clipped highlights on the mirror; ball found "
-    "by its outline's edges. Lamps are discs of 1.5 to 6 degrees radius in a smooth room"
+    f"px, {LIGHTS} light, unless said otherwise; 8-bit sRGB, with clipped highlights on the mirror; ball "
+    "found by its outline's edges. Lamps are discs of 1.5 to 6 degrees radius in a smooth room"
 )
 APART_DEG = 40.0
 HIDDEN_DEG = {"mirror": 30.0, "diffuse": 65.0}

@@ -9,7 +9,7 @@ from .marker import DICTIONARY, MarkerPose, dictionary_names, find_marker
 from .photo import Photo, read_photo
 from .placing import PlacedBall, place_ball
 from .shadow import ShadowLight, light_from_shadow
-from .unwrap import PANORAMA_FROM_CAMERA, Unwrapped, natural_width, unwrap
+from .unwrap import PANORAMA_FROM_CAMERA, Unwrapped, natural_width, unwrap, write_unwrapped
 
 __all__ = [
     "DICTIONARY",
@@ -37,4 +37,5 @@ __all__ = [
     "place_ball",
     "read_photo",
     "unwrap",
+    "write_unwrapped",
 ]

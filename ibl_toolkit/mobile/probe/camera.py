@@ -15,6 +15,7 @@ from .errors import ProbeError
 
 COEFFICIENTS = (0, 4, 5, 8, 12, 14)
 """How many distortion coefficients OpenCV knows the meaning of."""
+FILM_MM = 36, 24
 _HALF_PIXEL = 0.5  # OpenCV's pixel centres lie at the integers, ours half a pixel further
 _STEPS = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
 
@@ -70,6 +71,17 @@ class PhotoCamera:
         """
         middle = (width / 2, height / 2) if centre is None else tuple(map(float, centre))
         return cls((focal, focal), middle, width, height, tuple(map(float, distortion)))
+
+    @classmethod
+    def from_35mm(cls, focal_mm, width, height) -> PhotoCamera:
+        """A camera by its focal length in 35 mm terms [mm], as EXIF tells it: by the picture's diagonal.
+
+        Raises: ProbeError for what the class refuses.
+
+        >>> PhotoCamera.from_35mm(36, 3000, 2000).focal[0]
+        3000.0
+        """
+        return cls.from_focal(focal_mm / math.hypot(*FILM_MM) * math.hypot(width, height), width, height)
 
     @property
     def matrix(self) -> np.ndarray:

@@ -19,6 +19,7 @@ import cv2
 import numpy as np
 
 from ... import equirectangular
+from ...images import write_exr
 from .errors import ProbeError
 from .samples import in_picture
 
@@ -95,6 +96,15 @@ def unwrap(photo, camera, ball, width, panorama_from_camera=None, surroundings=n
     radiance = np.concatenate([strip[0] for strip in strips]).reshape(size[1], size[0], 3)
     known = np.concatenate([strip[1] for strip in strips]).reshape(size[1], size[0])
     return _averaged(radiance, known, fine)
+
+
+def write_unwrapped(unwrapped, path):
+    """Write the panorama as OpenEXR, with an alpha of 0 where nothing is known.
+
+    Raises: OSError where it cannot be written.
+    """
+    colours = {name: np.ascontiguousarray(unwrapped.radiance[..., k]) for k, name in enumerate("RGB")}
+    write_exr(path, {**colours, "A": unwrapped.known.astype(np.float32)})
 
 
 def natural_width(camera, ball) -> int:
