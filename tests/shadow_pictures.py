@@ -13,7 +13,6 @@ from expanded_panoramas.cycles_integration import capture, shadow_preview
 from expanded_panoramas.cycles_integration.node_trees import add
 from expanded_panoramas.cycles_integration.rendering import write_render
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import visibility
-from expanded_panoramas.sample_scenes.closed_room_truth import read_picture
 
 SUN, LAMP = (-0.41, -0.23, 0.88), (-1.37, -0.83, 3.12)
 """Direction to the sun, and where a lamp is [m]."""
@@ -97,14 +96,17 @@ def rendered(width, engine="CYCLES", channels="R", samples=1):
     return colours[:, 0] if len(channels) == 1 else colours, *vectors
 
 
-def composited(width):
-    """The finished picture (n,), red."""
+def composited(width, channels="R"):
+    """The finished picture (n,), or (n, c) of several channels."""
     scene = bpy.context.scene
     scene.render.resolution_x = scene.render.resolution_y = width
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.exr"
         write_render(scene, path)
-        return read_picture(path)[..., 0].ravel()
+        with OpenEXR.File(str(path), separate_channels=True) as file:
+            found = file.parts[0].channels
+            picture = np.stack([found[k].pixels.ravel() for k in channels], axis=1)
+    return picture[:, 0] if len(channels) == 1 else picture
 
 
 def _render(scene, folder):
