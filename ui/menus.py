@@ -27,6 +27,7 @@ class PANORAMA_MT_add(bpy.types.Menu):
         layout.operator("panorama.add_sun", text="Sun of the Panorama", icon="LIGHT_SUN")
         layout.operator("panorama.pick_sun", text="Sun of a Lamp (click it)", icon="EYEDROPPER")
         layout.operator("panorama.add_sun_by_time", text="Sun of a Place and Time...", icon="TIME")
+        layout.operator("panorama.lights_of_probe", text="Lights from Probe Photo...", icon="LIGHT_SUN")
         layout.separator()
         layout.operator("panorama.load_sample", text="Sample Room", icon="HOME")
 

@@ -48,7 +48,7 @@ def test_the_add_menu_offers_what_a_place_needs(fresh_blend):
     named = draw_entry(fresh_blend, menus.PANORAMA_MT_add.draw)
     assert set(named) == {
         "panorama.add_ball", "panorama.add_camera", "panorama.camera_from_view", "panorama.add_sun",
-        "panorama.pick_sun", "panorama.add_sun_by_time", "panorama.load_sample",
+        "panorama.pick_sun", "panorama.add_sun_by_time", "panorama.lights_of_probe", "panorama.load_sample",
     }  # fmt: skip
 
 

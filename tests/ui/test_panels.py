@@ -1,5 +1,6 @@
 """Every panel draws in every state of the work, names operators that exist, and says what comes next."""
 
+import numpy as np
 from layered_box import layered_box
 from room_job import built, calibrated, select
 
@@ -67,9 +68,10 @@ class Properties:
 
 def draw_all(bpy):
     """Draw the sidebar; returns its texts by panel."""
-    from expanded_panoramas.ui import layer_panel, picture_panels, place_panels
+    from expanded_panoramas.ui import layer_panel, picture_panels, place_panels, probe_panel
 
-    classes = (*place_panels.classes, *picture_panels.classes, *layer_panel.classes)
+    modules = (place_panels, picture_panels, probe_panel, layer_panel)
+    classes = [cls for module in modules for cls in module.classes]
     return {cls.__name__: draw(bpy, cls) for cls in classes}
 
 
@@ -152,6 +154,19 @@ def test_a_calibration_that_came_with_the_file(fresh_blend, tmp_path):
     texts = draw_all(fresh_blend)["PANORAMA_PT_calibration"]
     assert "12.50°, as the file says" in texts
     assert "±" not in texts
+
+
+def test_lights_of_a_photo_are_listed_with_what_is_doubtful(fresh_blend):
+    from expanded_panoramas.cycles_integration.probe_lights import ProbeSun, put_probe_lights
+
+    bpy = fresh_blend
+    assert "Photograph a mirror or matte ball" in draw_all(bpy)["PANORAMA_PT_light_of_photo"]
+    sun = ProbeSun(np.array((0.6, 0, 0.8)), np.array((2.0, 1.0, 1.0)), 4.0)
+    told = {"photo": "ball.jpg", "warnings": "Light 1: clipped\nThe frame cuts the ball"}
+    put_probe_lights(bpy.context.scene, [sun], np.eye(4).tolist(), told)
+    bpy.context.view_layer.update()
+    texts = draw_all(bpy)["PANORAMA_PT_light_of_photo"]
+    assert "Photo ball.jpg Probe Light 1 53° high, strength 2 Light 1: clipped The frame cuts" in texts
 
 
 def test_selected_pieces(fresh_blend, tmp_path):
