@@ -25,6 +25,33 @@ def whole_number(least, most=_MANY):
     return read
 
 
+def whole_numbers(least, most):
+    """Return a parser of whole numbers from `least` to `most`, with commas.
+
+    >>> whole_numbers(16, 4096)("512,1024")
+    (512, 1024)
+    """
+    one = whole_number(least, most)
+    return lambda text: tuple(one(part) for part in text.split(","))
+
+
+def some_of(choices):
+    """Return a parser of some of the choices, with commas.
+
+    >>> some_of(("hard", "pcf"))("pcf,hard")
+    ('pcf', 'hard')
+    """
+
+    def read(text):
+        wanted = tuple(text.split(","))
+        for one in wanted:
+            if one not in choices:
+                raise argparse.ArgumentTypeError(f"{one!r}: must be one or more of {', '.join(choices)}")
+        return wanted
+
+    return read
+
+
 def light_limit(text):
     """The most lights that are taken out of the map: `auto` (None: as many as there are), `none` (0) or N.
 

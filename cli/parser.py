@@ -3,7 +3,20 @@
 import argparse
 from pathlib import Path
 
-from . import batch, build, calibrate, depth, export, layers, lights, probe, render, sun, view
+from . import (
+    batch,
+    build,
+    calibrate,
+    depth,
+    export,
+    layers,
+    lights,
+    probe,
+    render,
+    shadow_preview,
+    sun,
+    view,
+)
 from .messages import warn
 
 VERBS = {
@@ -16,6 +29,7 @@ VERBS = {
     "layers": layers,
     "view": view,
     "export": export,
+    "shadow-preview": shadow_preview,
 }
 WITHOUT_SET = {"sun": sun}
 """Verbs whose options say all: no input file, no output, and nothing to do in a batch."""

@@ -4,7 +4,6 @@ found = page_scene(scene, depsgraph, kinds)            meshes, lights, ambient l
 write_page("page.html", found.scene, kinds, found.background, found.camera)
 """
 
-from .lighting import SOURCES
 from .page_scene import PageScene, page_scene
 
-__all__ = ["SOURCES", "PageScene", "page_scene"]
+__all__ = ["PageScene", "page_scene"]

@@ -17,8 +17,6 @@ from .. import maps
 from .camera import world_colour
 from .lights import PageLight, own_lights
 
-SOURCES = ("auto", "scene", "panorama", "both")
-"""Where the lights come from; auto: the scene's own, or without any the panorama's."""
 LIGHTS_WIDTH = 1024
 """A panorama's lights are looked for on a map of at most this width [px]."""
 
@@ -33,15 +31,16 @@ def lighting_of(
 ) -> tuple[list[PageLight], np.ndarray, list[str]]:
     """The strongest lights on what throws shadows, ``most`` at most; ambient light (3,); warnings.
 
-    panorama: that of the scene's place. light_from: of SOURCES. Lights that there are too many of brighten
-    the ambient light. A sun that was picked from the panorama stands for its part of it.
+    panorama: that of the scene's place. light_from: of LIGHT_FROM. Lights that there are too many of, and
+    those that throw no shadows, brighten the ambient light. A sun that was picked from the panorama stands
+    for its part of it.
 
     Raises ValueError without any light, and for a panorama's without one.
     """
     points = np.concatenate([mesh.points for mesh in meshes if mesh.throws])
     own = own_lights(depsgraph, points)
     if light_from == "auto":
-        light_from = "scene" if own or panorama is None else "panorama"
+        light_from = "scene" if panorama is None or any(one.throws for one in own) else "panorama"
     if light_from != "scene" and panorama is None:
         raise ValueError(f"scene '{scene.name}' has no panorama whose lights could be taken")
     if light_from == "scene":
@@ -50,15 +49,16 @@ def lighting_of(
         found, ambient, warnings = _of_panorama(panorama, points, meshes, most)
     if light_from == "both":
         found += [one for one in own if not one.is_picked]
-    if not found:
-        raise ValueError("no light shines on what throws shadows: add one, or show it in renders")
     middle = _middle(points)
-    found = sorted(found, key=lambda one: -float(one.irradiance(middle) @ LUMINANCE))
-    if found[most:]:
-        names = ", ".join(f"'{one.name}'" for one in found[most:])
-        warnings = [*warnings, f"{names}: more than {most} lights, so they only brighten and throw no shadow"]
-    left = sum((one.on_floor(middle) for one in found[most:]), np.zeros(3))
-    return found[:most], ambient + left, warnings
+    throwing = [one for one in found if one.throws]
+    throwing.sort(key=lambda one: -float(one.irradiance(middle) @ LUMINANCE))
+    if not throwing:
+        raise ValueError("no light shines on what throws shadows: add one, or show it in renders")
+    if throwing[most:]:
+        names = ", ".join(f"'{one.name}'" for one in throwing[most:])
+        warnings = [*warnings, f"{names}: only brighten and throw no shadow, for there are more than {most}"]
+    left = throwing[most:] + [one for one in found if not one.throws]
+    return throwing[:most], ambient + sum((one.on_floor(middle) for one in left), np.zeros(3)), warnings
 
 
 def _of_panorama(panorama, points, meshes, most):

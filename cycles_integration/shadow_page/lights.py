@@ -16,11 +16,13 @@ from ..shadow_preview.strength import strength_of
 
 @dataclass(frozen=True)
 class PageLight:
-    """A light, and the name of where it comes from. is_picked: the artist took it from the panorama."""
+    """A light, and the name of where it comes from. is_picked: the artist took it from the panorama. throws:
+    it throws shadows; else it only brightens."""
 
     name: str
     light: SceneLight
     is_picked: bool = False
+    throws: bool = True
 
     def irradiance(self, place: np.ndarray) -> np.ndarray:
         """(3,) of a surface at a place (3,) [m] that faces the light."""
@@ -44,7 +46,7 @@ def own_lights(depsgraph: bpy.types.Depsgraph, points: np.ndarray) -> list[PageL
     shown = [one.object.original for one in shown_instances(depsgraph, {"LIGHT"}) if not one.is_instance]
     lights = [(one, _light(one, depsgraph, points)) for one in shown if one not in of_place]
     return [
-        PageLight(one.name, light, LAMP_DIRECTION in one)
+        PageLight(one.name, light, LAMP_DIRECTION in one, _throws(one.data))
         for one, light in lights
         if light is not None and max(light.strength) > 0
     ]
@@ -63,6 +65,12 @@ def _light(light, depsgraph, points):
     if thing.data.type == "AREA":
         strength = strength * np.maximum(cosines, 0).mean()
     return SceneLight(LightCamera.of_lamp(matrix[:3, 3], points), tuple(strength))
+
+
+def _throws(data):
+    """A preview switches the shadows off for which it stands."""
+    previews = (scene.panorama_shadow_preview for scene in bpy.data.scenes)
+    return data.use_shadow or any(row.light == data for preview in previews for row in preview.switched_off)
 
 
 def _cosines(away, axis):

@@ -41,8 +41,8 @@ def page_scene(
 ) -> PageScene:
     """The scene as it is evaluated, for a page with some kinds of shadow map.
 
-    light_from: of SOURCES. most: lights, 1 to MOST_LIGHTS. exposure: factor from radiance to the screen, by
-    default as bright as the 3D View shows it.
+    light_from: of LIGHT_FROM. most: lights, 1 to MOST_LIGHTS. exposure: factor from radiance to the screen,
+    by default as bright as the 3D View shows it.
 
     Raises: ValueError that says why where nothing throws a shadow, no light or no camera is there, or the
     camera is one that the page does not have.

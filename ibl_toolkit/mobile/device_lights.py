@@ -21,6 +21,8 @@ from ..light.light_map import LUMINANCE, check_light_map
 from .shadow_maps import LightCamera
 from .shadow_scene import MOST_LIGHTS, SceneLight
 
+LIGHT_FROM = ("auto", "scene", "panorama", "both")
+"""Where a page's lights come from; auto: the scene's own, or without any its panorama's."""
 APART = np.radians(10.0)
 """Lights nearer to each other than this are one [rad]: their shadows of a thing lie less than a fifth of its
 height apart."""

@@ -10,7 +10,7 @@ Sources: "Realistic Shadows for Mobile AR", section IV; V. Pamplona, "Shadow Map
 from .light_camera import LightCamera
 from .settings import METHODS, STORAGES, ShadowSettings
 from .shadow_map import ShadowMap, remaining_light, shadow_map, visibility
-from .suggestion import suggested_settings
+from .suggestion import settings_with, suggested_settings
 
 __all__ = [
     "METHODS",
@@ -19,6 +19,7 @@ __all__ = [
     "ShadowMap",
     "ShadowSettings",
     "remaining_light",
+    "settings_with",
     "shadow_map",
     "suggested_settings",
     "visibility",

@@ -31,7 +31,12 @@ def suggested_settings(
     if not 0 <= penumbra < float("inf"):
         raise ValueError(f"penumbra {penumbra} m must be 0 or more")
     texels = min(penumbra * resolution / extent, WIDEST_WINDOW)
-    window = 1 if method == "hard" else max(2 * round((texels - 1) / 2) + 1, _NARROWEST)
+    return settings_with(max(2 * round((texels - 1) / 2) + 1, _NARROWEST), resolution, storage, method)
+
+
+def settings_with(window: int, resolution: int, storage: str, method: str) -> ShadowSettings:
+    """The measured settings for a window [texels]; `hard` has none. Raises what ShadowSettings refuses."""
+    window = 1 if method == "hard" else window
     factor, units = offsets(method, window)
     return ShadowSettings(
         method=method,
