@@ -1,6 +1,5 @@
 """Radiance .hdr files in, through OpenCV, after a look at the header."""
 
-import contextlib
 import re
 
 import cv2
@@ -8,10 +7,10 @@ import numpy as np
 
 from .checking import refuse_more_than, refuse_other_shapes, row_blocks
 from .errors import ImageError
+from .quiet_opencv import quiet_opencv
 
 _HEADER_BYTES = 1 << 16
 _FORMAT = b"32-bit_rle_rgbe"
-_SILENT = 0  # of OpenCV's log levels, which have no names in Python
 _SIZE = re.compile(rb"-Y +(\d{1,9}) +\+X +(\d{1,9}) *")
 
 
@@ -46,20 +45,10 @@ def read_colour(path, max_bytes):
     refuse_more_than(max_bytes, 12 * width * height, f"{width} x {height} px", path)
     refuse_other_shapes(width, height, path)
     # Not cv2.imread: on Windows it cannot open names beyond the code page.
-    with _quiet_opencv():
+    with quiet_opencv():
         image = cv2.imdecode(np.fromfile(path, dtype=np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_ANYCOLOR)
     if image is None:
         raise ImageError(f"{path}: truncated or damaged: its scanlines cannot be decoded")
     for rows in row_blocks(height):  # in one go, OpenCV would make a copy
         image[rows] = image[rows, :, ::-1].copy()
     return image
-
-
-@contextlib.contextmanager
-def _quiet_opencv():
-    level = cv2.getLogLevel()
-    cv2.setLogLevel(_SILENT)
-    try:
-        yield
-    finally:
-        cv2.setLogLevel(level)

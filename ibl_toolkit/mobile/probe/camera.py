@@ -17,6 +17,7 @@ COEFFICIENTS = (0, 4, 5, 8, 12, 14)
 """How many distortion coefficients OpenCV knows the meaning of."""
 FILM_MM = 36, 24
 _HALF_PIXEL = 0.5  # OpenCV's pixel centres lie at the integers, ours half a pixel further
+_undistorted = getattr(cv2, "undistortPointsIter", cv2.undistortPoints)  # the second takes steps in OpenCV 5
 _STEPS = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
 
 
@@ -103,7 +104,7 @@ class PhotoCamera:
         xy = np.asarray(xy, dtype=np.float64)
         if self.distortion:
             flat = (xy - _HALF_PIXEL).reshape(-1, 1, 2)
-            flat = cv2.undistortPointsIter(flat, self.matrix, self.coefficients, None, None, _STEPS)
+            flat = _undistorted(flat, self.matrix, self.coefficients, R=None, P=None, criteria=_STEPS)
             normalised = flat.reshape(xy.shape)
         else:
             normalised = (xy - self.centre) / self.focal

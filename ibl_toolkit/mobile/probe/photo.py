@@ -13,6 +13,7 @@ from ...images.channel_names import colour_channels
 from ...images.checking import refuse_impossible_radiance, refuse_more_than
 from ...images.errors import ImageError
 from ...images.png import linear_from_srgb, srgb_codes
+from ...images.quiet_opencv import quiet_opencv
 from ...images.radiance_hdr import read_size
 from ...light.light_map import LUMINANCE
 
@@ -124,14 +125,11 @@ def _read_exr(path):
 
 
 def _decoded(data, path):
-    level = cv2.getLogLevel()
-    cv2.setLogLevel(0)
     try:
-        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)
+        with quiet_opencv():
+            image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)
     except cv2.error as error:  # a size beyond OpenCV's own limit
         raise ImageError(f"{path}: cannot be decoded: {error.err}") from error
-    finally:
-        cv2.setLogLevel(level)
     if image is None:
         raise ImageError(f"{path}: not a picture that can be read: it starts with {data[:10]!r}")
     return cv2.cvtColor(image, cv2.COLOR_BGR2RGB)
