@@ -1,5 +1,8 @@
 """The page in a real, headless Chromium: what it shows is what numpy's shadow maps say."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import web_pages
@@ -32,9 +35,16 @@ def shown(tmp_path_factory):
     cases = []
     for method, storage, lights, background in CASES.values():
         alone = background is white
-        scene = still_life(lights, ("support",) * 3, 0.0) if alone else still_life(lights)
+        scene = still_life(lights, ("support",) * 3, 0.0) if alone else as_exported(still_life(lights))
         cases.append((scene, suggested_settings(4.0, 512, storage, 0.04, method), background()))
     return dict(zip(CASES, measured(cases, tmp_path_factory.mktemp("pages")), strict=True))
+
+
+def as_exported(scene):
+    """Floor and box stand for real things, whose shadows are in the photograph."""
+    floor, box, ball = scene.meshes
+    real = (replace(mesh, role="support", throws=False) for mesh in (floor, box))
+    return replace(scene, meshes=(*real, ball))
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -61,3 +71,46 @@ def test_page_says_what_the_device_lacks(tmp_path):
     # A busy machine's browser may dump the page before its modules have run: it is asked up to three times.
     shown = (web_pages.chromium(*command) for _ in range(3))
     assert any("<output>this browser or device has no WebGL 2</output>" in page for page in shown)
+
+
+SMALL_TEXTURES = """<script>
+const limit = WebGL2RenderingContext.prototype.getParameter;
+WebGL2RenderingContext.prototype.getParameter = function (name) {
+  return name === this.MAX_TEXTURE_SIZE ? 128 : limit.call(this, name);
+};
+</script>
+<script type="module">
+const kinds = document.querySelector("select");
+const canvas = document.querySelector("canvas");
+while (!kinds.length) { await new Promise((done) => setTimeout(done, 10)); }
+const gl = canvas.getContext("webgl2");
+const shown = async () => {
+  dispatchEvent(new Event("resize"));
+  await new Promise(requestAnimationFrame); /* in which it is drawn first */
+  const pixels = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  return new Set(pixels).size + " " + pixels.reduce((sum, value, k) => (sum + value * (k % 997)) % 1e9, 0);
+};
+const before = await shown();
+kinds.selectedIndex = 1;
+kinds.dispatchEvent(new Event("change"));
+document.title = [before, await shown()].join();
+</script>
+</body>"""
+
+
+def test_where_a_map_fails_the_page_says_why_and_keeps_the_one_it_had(tmp_path):
+    """As on a device whose textures end at 128 px, of which the second kind of map wants 256."""
+    kinds = [suggested_settings(4.0, size, "8+8", 0, "hard") for size in (64, 256)]
+    page = tmp_path / "page.html"
+    write_page(page, still_life(), kinds, sky(), web_pages.camera())
+    page.write_text(page.read_text(encoding="utf-8").replace("</body>", SMALL_TEXTURES), encoding="utf-8")
+    for _ in range(3):  # a busy machine's browser may dump the page before its modules have run
+        dumped = web_pages.chromium(tmp_path, "--window-size=240,160", "--dump-dom", page.as_uri())
+        before, _, after = re.search("<title>(.*)</title>", dumped)[1].partition(",")
+        if after:
+            break
+    complaint = "this device's textures end at 128 texels a side, the shadow map has 256"
+    assert f"<output>{complaint}</output>" in dumped
+    assert after == before
+    assert int(before.split()[0]) > 50  # values of pixels: there is a picture
