@@ -21,6 +21,7 @@ from . import (
     render_presets,
     set_files,
     shadow_lights,
+    shadow_page,
     shadow_preview,
     shadow_preview_properties,
     sun_picker,
@@ -53,6 +54,7 @@ OPERATORS = (
     layers,
     shadow_lights,
     shadow_preview,
+    shadow_page,
     asset_library,
 )
 

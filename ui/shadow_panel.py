@@ -33,6 +33,7 @@ class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
         column = layout.column(align=True)
         column.operator("panorama.preview_shadows", icon="SHADING_RENDERED")
         column.operator("panorama.composite_shadows", icon="NODE_COMPOSITING")
+        column.operator("panorama.export_shadow_page", text="Export Shadow Page...", icon="EXPORT")
         if not exists:
             return
         self.say(context, preview.problem, "ERROR")

