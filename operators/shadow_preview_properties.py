@@ -132,7 +132,8 @@ class PanoramaShadowPreview(bpy.types.PropertyGroup):
     )
     window: IntProperty(
         name="Window",
-        description="Width of the filter, odd: the wider, the softer the edges. 9 at most for PCF [texels]",
+        description="Width of the filter, odd: the wider, the softer the edges. PCF can have 9 at most, 5 "
+        "with two lights, 3 with more [texels]",
         default=3,
         min=1,
         soft_max=15,

@@ -12,7 +12,7 @@ its `remaining_light`.
 
 from .casters import KINDS, casters_of, throwing_names
 from .composite import composite_nodes, put_on_picture, take_off_picture
-from .group import WIDEST_WINDOW, ShownLight, aim_group, build_group, fits, images_of
+from .group import MOST_LOOK_UPS, ShownLight, aim_group, build_group, fits, images_of
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_maps_of
 from .map_image import store_map
@@ -25,8 +25,8 @@ __all__ = [
     "COMPOSITOR",
     "KINDS",
     "MOST_LIGHTS",
+    "MOST_LOOK_UPS",
     "SHADER",
-    "WIDEST_WINDOW",
     "ShownLight",
     "aim_group",
     "build_group",

@@ -10,11 +10,13 @@ from .kinds import GROUP_NODES
 class DepthTest:
     """Writes the test of one method into a node tree.
 
-    place: the projection's outputs. texel: the group that reads the map; name: of its nodes.
+    place: the projection's outputs. texel: the group that reads the map; name: of its nodes. after: a socket,
+    or a number, that has to be there before the first look-up, see `new_texel`.
     """
 
-    def __init__(self, tree, settings: ShadowSettings, place, texel, name: str):
+    def __init__(self, tree, settings: ShadowSettings, place, texel, name: str, after=0.0):
         self.tree, self.settings, self.place, self.texel, self.name = tree, settings, place, texel, name
+        self.after = after
 
     def visibility(self):
         """The socket of the lit part, 0 to 1, of a point on the map."""
@@ -43,7 +45,8 @@ class DepthTest:
 
     def read(self, column, row, depth=0.0):
         """Both numbers of a texel."""
-        inputs, kind = {"Column": column, "Row": row, "Depth": depth}, GROUP_NODES[self.tree.bl_idname]
+        inputs = {"Column": column, "Row": row, "Depth": depth, "After": self.after}
+        kind = GROUP_NODES[self.tree.bl_idname]
         return list(add(self.tree, kind, inputs, node_tree=self.texel, name=self.name).outputs)
 
     def is_lit(self, column, row):
@@ -63,6 +66,7 @@ class DepthTest:
             line = None
             for column, width in zip(columns, wide, strict=True):
                 line = self.plus(line, numbers(column, row), width)
+                self.after = line[0]
             sums = self.plus(sums, line, height)
         return [self.maths("DIVIDE", total, float(window**2)) for total in sums]
 

@@ -18,8 +18,8 @@ from .depth_test import DepthTest
 from .kinds import COMPOSITOR, GROUP_NODES, SHADER
 from .lights_together import together
 
-WIDEST_WINDOW = 9
-"""Of `pcf` in nodes [texels]: each place costs (window + 1)² look-ups, and a shader that long to compile."""
+MOST_LOOK_UPS = 100
+"""Of `pcf` in nodes: each place costs (window + 1)² for each light, and a shader that long to compile."""
 KEY = "panorama_shadow_map"
 """Custom property of a group: the nodes that it was built with."""
 _LAYOUT = 2
@@ -56,9 +56,9 @@ def build_group(
     it is what remains of them together: Shaded has it per channel, the others have its luminance.
     A compositor's has Image for both, per channel, and needs the passes Position and Normal; what lies at
     infinity stays.
-    Raises ValueError for a window of `pcf` beyond WIDEST_WINDOW.
+    Raises ValueError for a window of `pcf` that takes more than MOST_LOOK_UPS.
     """
-    refuse_wide(lights[0].made.settings)
+    refuse_wide(lights[0].made.settings, len(lights))
     if group is None:
         group = new_group(name, kind, {})
     _give_sockets(group)
@@ -98,12 +98,15 @@ def images_of(group: bpy.types.NodeTree | None) -> list[bpy.types.Image]:
     return list(dict.fromkeys(filter(None, found)))
 
 
-def refuse_wide(settings: ShadowSettings):
-    """Raise ValueError for a window of `pcf` beyond WIDEST_WINDOW."""
-    if settings.method == "pcf" and settings.window > WIDEST_WINDOW:
+def refuse_wide(settings: ShadowSettings, lights: int):
+    """Raise ValueError for a window of `pcf` that takes more than MOST_LOOK_UPS for so many lights."""
+    widest = int((MOST_LOOK_UPS / lights) ** 0.5) - 1
+    widest -= (widest + 1) % 2  # windows are odd
+    if settings.method == "pcf" and settings.window > widest:
+        several = f" for {lights} lights" if lights > 1 else ""
         raise ValueError(
-            f"window {settings.window} of PCF must not exceed {WIDEST_WINDOW} texels in nodes: each point "
-            f"would cost {(settings.window + 1) ** 2} look-ups"
+            f"window {settings.window} of PCF must not exceed {widest} texels in nodes{several}: each point "
+            f"would cost {lights * (settings.window + 1) ** 2} look-ups"
         )
 
 
@@ -111,8 +114,11 @@ def _fill(group, lights):
     kind = group.bl_idname
     given = add(group, "NodeGroupInput").outputs
     where = given if kind == COMPOSITOR else add(group, "ShaderNodeNewGeometry").outputs
-    tests = [_tested(group, where, number, light) for number, light in enumerate(lights)]
-    visibilities, received = zip(*tests, strict=True)
+    visibilities, received = [], []
+    for number, light in enumerate(lights):
+        place, lit = _tested(group, where, number, light, (visibilities or [0.0])[-1])
+        visibilities.append(lit)
+        received.append(place["Light"])
     if len(lights) > 1:
         coloured, visibility = together(group, visibilities, received)
     else:
@@ -134,8 +140,8 @@ def _fill(group, lights):
     aim_group(group, lights)
 
 
-def _tested(group, where, number, light):
-    """A light's visibility, and what it would throw on the surface without shadows."""
+def _tested(group, where, number, light, after):
+    """The outputs of a light's projection, and its visibility; computed after another's."""
     kind, settings = group.bl_idname, light.made.settings
     place = add(
         group,
@@ -145,10 +151,9 @@ def _tested(group, where, number, light):
         name=_name(number),
     ).outputs
     reader = texel.new_texel(settings, light.image, kind)
-    lit = DepthTest(group, settings, place, reader, f"{texel.NAME} {number}").visibility()
+    lit = DepthTest(group, settings, place, reader, f"{texel.NAME} {number}", after).visibility()
     shadow = maths(group, "MULTIPLY", place["Inside"], maths(group, "SUBTRACT", 1.0, lit))
-    visibility = maths(group, "MULTIPLY", maths(group, "SUBTRACT", 1.0, shadow), place["Facing"])
-    return visibility, place["Light"]
+    return place, maths(group, "MULTIPLY", maths(group, "SUBTRACT", 1.0, shadow), place["Facing"])
 
 
 def _darkened(tree, colour, visibility, darkness):

@@ -20,14 +20,16 @@ def new_texel(settings: ShadowSettings, image: bpy.types.Image, kind: str = SHAD
 
     First and Second are the depth, or the two moments. Those of `evsm` are divided by x and x² of the point
     whose linear depth is the input Depth: exp(2c z) alone is more than a 32-bit float holds well.
+    After: any number that has to be there first. Without it Cycles computes the places of all look-ups before
+    it reads the first, and its stack is too small for many (a shader that does not fit is black).
     """
-    inputs = dict.fromkeys(("Column", "Row", "Depth"), "NodeSocketFloat")
+    inputs = dict.fromkeys(("Column", "Row", "Depth", "After"), "NodeSocketFloat")
     tree = new_group(NAME, kind, dict.fromkeys(("First", "Second"), "NodeSocketFloat"), inputs)
     given = add(tree, "NodeGroupInput").outputs
     size = settings.resolution
     middles = [_middle(tree, given[side], size) for side in ("Column", "Row")]
-    place = add(tree, "ShaderNodeCombineXYZ", {0: middles[0], 1: middles[1], 2: 1.0}).outputs[0]
-    read = _read_in_shader if kind == SHADER else _read_in_compositor
+    read, third = (_read_in_shader, given["After"]) if kind == SHADER else (_read_in_compositor, 1.0)
+    place = add(tree, "ShaderNodeCombineXYZ", {0: middles[0], 1: middles[1], 2: third}).outputs[0]
     first, second = _numbers(tree, read(tree, image, place), settings.storage)
     if settings.method == "evsm":
         first, second = _exponential(tree, first, second, given["Depth"], settings)

@@ -43,7 +43,7 @@ def settings_of(preview) -> ShadowSettings:
         bleeding_reduction=bleeding,
         exponent=strength,
     )
-    refuse_wide(settings)
+    refuse_wide(settings, max(len(lights_of(preview)), 1))
     return settings
 
 

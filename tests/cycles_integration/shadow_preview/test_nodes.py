@@ -40,7 +40,7 @@ def test_nodes_show_what_numpy_computes(still_life, kind, method):
 def test_windows_and_reductions_are_those_of_the_settings(still_life):
     light = shadow_pictures.add_light("AREA")
     for settings in (
-        ShadowSettings("pcf", 64, "16+16", window=5),
+        ShadowSettings("pcf", 64, "16+16", window=9),  # fills Cycles' stack
         ShadowSettings("vsm", 100, "16+16", window=9, bleeding_reduction=0.6),
         ShadowSettings("evsm", 64, "8+8", window=1, exponent=12.0, bleeding_reduction=0.0),
     ):

@@ -54,6 +54,20 @@ def test_a_sun_and_a_lamp_leave_what_numpy_says(lights, method):
     assert np.sort(off)[-1 - TIES] <= EQUAL
 
 
+def test_four_lights_fit_into_the_stack_of_cycles(lights):
+    """A shader that does not is black; PCF's widest window takes most of it."""
+    settings = ShadowSettings("pcf", 64, "16+16", window=3)
+    four = [*lights, shadow_pictures.add_light("SPOT"), shadow_pictures.add_light("AREA")]
+    shown = [shadow_pictures.shown(light, settings) for light in four]
+    made = shadow_preview.build_group(shown, None, "Shadow Map Preview")
+    shadow_pictures.show(bpy.data.materials[0], made, "Shaded")
+    left, points, normals = shadow_pictures.rendered(WIDTH, channels="RGB")
+    assert np.sort(np.abs(left - remaining(shown, points, normals)).max(axis=1))[-1 - TIES] <= EQUAL
+    wide = [shadow_pictures.shown(light, ShadowSettings("pcf", 64, window=7)) for light in lights]
+    with pytest.raises(ValueError, match="window 7 of PCF must not exceed 5 texels in nodes for 2 lights"):
+        shadow_preview.build_group(wide, None, "Shadow Map Preview")
+
+
 def test_what_no_light_reaches_stays(lights):
     """As `remaining_light` has it: there is no light that a shadow could take."""
     lights[0].rotation_euler = (3.0, 0.2, 0)
