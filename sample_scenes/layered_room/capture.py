@@ -18,13 +18,13 @@ FAR = 1e6
 
 
 def capture_layers(
-    scene: bpy.types.Scene, width: int, samples: int, *, denoise: bool = True, seed: int = 0
+    scene: bpy.types.Scene, width: int, samples: int | None, *, denoise: bool = True, seed: int = 0
 ) -> LayeredPanorama:
     """Render the room's panorama, width × width/2, in two layers: "room" and "objects".
 
     Each layer has what is seen of its collection with the other out of sight, yet lit, shadowed and
     mirrored by it. Radiance is the mean over a pixel, of the layer's own surfaces alone; depth is that of
-    the pixel's centre, NaN where no object is.
+    the pixel's centre, NaN where no object is. Without samples there is no radiance.
 
     Source: thesis, 6.3.2, Fig. 6-12.
     """
@@ -69,12 +69,9 @@ def render_view_distance(scene: bpy.types.Scene, view: View, size: tuple[int, in
     _settings(scene, size, 0)
     view_layer.use_pass_z = True
     try:
-        scene.cycles.samples, scene.cycles.use_denoising = 1, False
-        capture.sample_pixel_centres(scene)
-        return capture.render_passes(scene)["Depth"]
+        return _depth_of_centres(scene)
     finally:
         view_layer.use_pass_z = False
-        _box_filter(scene)
         _remove_camera(camera)
 
 
@@ -83,20 +80,34 @@ def _capture_layer(scene, name, shown, hidden, samples, denoise):
     layer_collection(view_layer, layer_collection_of(scene, hidden)).indirect_only = True
     scene.render.film_transparent = view_layer.use_pass_z = True
     try:
+        depth = _depth_of_centres(scene)
+        if samples is None:
+            return Layer(name, EQUIRECTANGULAR, {"depth": np.where(depth < FAR, depth, np.nan)})
         scene.cycles.samples, scene.cycles.use_denoising = samples, denoise
         picture = capture.render_passes(scene)["Combined"]
-        scene.cycles.samples, scene.cycles.use_denoising = 1, False
-        capture.sample_pixel_centres(scene)
-        depth = capture.render_passes(scene)["Depth"]
     finally:
         layer_collection(view_layer, layer_collection_of(scene, hidden)).indirect_only = False
         scene.render.film_transparent = view_layer.use_pass_z = False
-        _box_filter(scene)
     cover = picture[..., 3:]
     radiance = np.maximum(picture[..., :3], 0) / np.where(cover > 0, cover, 1)
     seen = (depth < FAR) & (cover[..., 0] > 0)
     attributes = {"radiance": radiance.astype(np.float32), "depth": np.where(seen, depth, np.nan)}
     return Layer(name, EQUIRECTANGULAR, attributes)
+
+
+def _depth_of_centres(scene):
+    view_layer, black = scene.view_layers[0], bpy.data.materials.new("Black")
+    black.use_nodes = True
+    black.node_tree.nodes.clear()
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    capture.sample_pixel_centres(scene)
+    view_layer.material_override = black  # light takes most of the time, and isn't kept
+    try:
+        return capture.render_passes(scene)["Depth"]
+    finally:
+        view_layer.material_override = None
+        bpy.data.materials.remove(black)
+        _box_filter(scene)
 
 
 def _settings(scene, size, seed):

@@ -76,9 +76,14 @@ def test_the_layers_are_the_room_and_what_stands_in_it(room):
         pixel_direction = equirectangular.pixel_directions(WIDTH, WIDTH // 2)[j, i]
         assert back.depth[j, i] == pytest.approx(distance / abs(pixel_direction[axis]), rel=1e-4), toward
     again = capture.capture_layers(room, WIDTH, 1, denoise=False)
-    for first, second in zip(panorama.layers, again.layers, strict=True):
+    bare = capture.capture_layers(room, WIDTH, None)
+    for first, second, unlit in zip(panorama.layers, again.layers, bare.layers, strict=True):
         np.testing.assert_array_equal(first.depth, second.depth)
         np.testing.assert_array_equal(first.radiance, second.radiance)
+        assert unlit.radiance is None
+        at_rim = unlit.mask & ~first.mask  # the centre is covered, and the sample missed
+        assert at_rim.mean() < 0.01
+        np.testing.assert_array_equal(np.where(at_rim, np.nan, unlit.depth), first.depth)
 
 
 def test_a_view_is_of_its_size_and_leaves_no_camera_behind(room):
