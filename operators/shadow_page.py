@@ -54,8 +54,8 @@ class PANORAMA_OT_export_shadow_page(Reporting, ExportHelper, bpy.types.Operator
         max=MOST_LIGHTS,
     )
     compare: BoolProperty(
-        name="All Methods in a Menu",
-        description="Give the page a menu with the other methods too, in the same resolution and storage",
+        name="All Methods",
+        description="Give the page a menu that has the other methods too, in the same resolution and storage",
         default=False,
     )
     filter_glob: StringProperty(default="*.html;*.glb", options={"HIDDEN"})
