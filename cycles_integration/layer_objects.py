@@ -1,4 +1,4 @@
-"""A layered panorama as objects: a mesh for each layer that shows its own picture.
+"""A layered panorama as objects: meshes of each layer that show its own picture.
 
 All hang on one Empty where the panorama stands; each material looks its layer up by the direction from there,
 as those of a place do (section 5.5.4). So from the origin the picture is the panorama's, whatever the meshes
@@ -15,7 +15,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ..ibl_toolkit import cube_map
-from ..ibl_toolkit.layers.export.pieces import MESHES, checked_far, leaves_domain, parts_of, shape_radius
+from ..ibl_toolkit.layers.export.pieces import MESHES, checked_far, leaves_domain, mesh_parts, shape_radius
 from ..ibl_toolkit.layers.export.texture import spread
 from ..ibl_toolkit.layers.panorama import CUBE_MAP, Layer, LayeredPanorama
 from . import blender_images
@@ -29,7 +29,7 @@ RADIUS = "panorama_radius"
 
 @dataclass(frozen=True)
 class LayerObjects:
-    """What was made; objects in the order of the layers, a part at infinity after the rest of its layer."""
+    """What was made; objects in the order of the layers, of each its `mesh_parts`."""
 
     collection: bpy.types.Collection
     origin: bpy.types.Object
@@ -56,7 +56,7 @@ def add_layers(
     parts = [
         (layer, part, mesh_of(part, shape_radius(panorama)))
         for layer in panorama.layers
-        for part in parts_of(layer, far)
+        for part in mesh_parts(panorama, layer, far)
     ]
     collection = bpy.data.collections.new(COLLECTION)
     scene.collection.children.link(collection)

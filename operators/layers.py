@@ -46,7 +46,7 @@ def make_layers(scene, tell, folder, radius, width, most):
 def _captured(scene, tell, radius, width, most):
     """A panorama, and whether its layers should be continuous in depth.
 
-    Surfaces are kept as they are rendered: meshes bridge their jumps, where split layers would show slits.
+    Surfaces are kept as they are rendered: where their depth jumps their meshes are cut.
     """
     path = bpy.path.abspath(scene.panorama_set.image_path)
     if not path:

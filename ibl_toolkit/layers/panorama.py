@@ -86,6 +86,17 @@ class Layer:
         mask = self.attributes.get("mask")
         return ~np.isnan(self.depth) if mask is None else mask
 
+    def within(self, pixels: np.ndarray, name: str | None = None) -> Layer:
+        """The layer with that part of its domain that is in `pixels` (H, W) bool, and another name if given.
+
+        Raises: ValueError where nothing is left.
+        """
+        inside = self.mask & pixels
+        attributes = {**self.attributes, "depth": np.where(inside, self.depth, self.depth.dtype.type(np.nan))}
+        if "mask" in attributes:
+            attributes["mask"] = inside
+        return Layer(self.name if name is None else name, self.mapping, attributes)
+
 
 @dataclass(frozen=True, eq=False)
 class LayeredPanorama:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..making.continuous_pieces import mesh_pieces
 from ..meshes.bounded_mesh import bounded_mesh
 from ..meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
 from ..meshes.parallax import pixel_angle
@@ -57,7 +58,7 @@ def pieces_of(
     far: float | None = None,
     texture_error_px: float = TEXTURE_ERROR_PX,
 ) -> list[Piece]:
-    """A piece for each layer; for a layer that is in part at infinity, two.
+    """A piece for each of `mesh_parts`.
 
     mesh_of: gives a mesh (its `points` and `triangles`) over the domain of a layer, for a radius [m]. What
     lies at infinity becomes a sphere of the radius `far` [m], `far_radius` if None.
@@ -69,7 +70,7 @@ def pieces_of(
     pieces = []
     for layer in panorama.layers:
         texture = texture_of(layer, exposure)
-        for part in parts_of(layer, far):
+        for part in mesh_parts(panorama, layer, far):
             mesh = mesh_of(part, shape_radius(panorama))
             pieces.append(_piece(part, mesh, texture, texture_error_px))
     return pieces
@@ -98,6 +99,15 @@ def parts_of(layer: Layer, far: float) -> list[Layer]:
         depth = np.full(layer.depth.shape, far, dtype=np.float32)
         parts.append(Layer(name, layer.mapping, {"depth": depth, "mask": at_infinity}))
     return parts
+
+
+def mesh_parts(panorama: LayeredPanorama, layer: Layer, far: float) -> list[Layer]:
+    """What of a layer one mesh shall be of: its `parts_of`, taken apart where their depth jumps.
+
+    So no mesh joins what is seen apart from within `shape_radius`.
+    """
+    radius = shape_radius(panorama)
+    return [piece for part in parts_of(layer, far) for piece in mesh_pieces(part, radius)]
 
 
 def far_radius(panorama: LayeredPanorama) -> float:

@@ -28,9 +28,7 @@ def parted(layer: Layer, classes: dict[str, np.ndarray]) -> list[Layer]:
     """
     inside = layer.mask
     return [
-        Layer(f"{layer.name}, {name}", layer.mapping, _within(layer, inside & mask))
-        for name, mask in classes.items()
-        if (inside & mask).any()
+        layer.within(mask, f"{layer.name}, {name}") for name, mask in classes.items() if (inside & mask).any()
     ]
 
 
@@ -78,7 +76,7 @@ def with_infinity(panorama: LayeredPanorama, tolerance_px: float = TOLERANCE_PX)
         grid = grid_of(layer)
         beyond = layer.mask & (layer.depth >= infinite_from(panorama.radius, grid.pixel, tolerance_px))
         if (layer.mask & ~beyond).any():
-            kept.append(Layer(layer.name, layer.mapping, _within(layer, layer.mask & ~beyond)))
+            kept.append(layer.within(~beyond))
         if beyond.any():
             far.setdefault((layer.mapping, layer.size), []).append((layer, beyond))
     taken = {layer.name for layer in kept}
@@ -122,12 +120,6 @@ def flattened(layer: Layer, radius: float, tolerance_px: float = TOLERANCE_PX) -
     with np.errstate(divide="ignore"):
         depth[inside] = np.where(near[inside] == 0, np.inf, 1 / result)
     return Layer(layer.name, layer.mapping, {**layer.attributes, "depth": grid.image(depth)})
-
-
-def _within(layer, mask):
-    depth = np.where(mask, layer.depth, layer.depth.dtype.type(np.nan))
-    attributes = {**layer.attributes, "depth": depth}
-    return attributes | ({"mask": mask} if "mask" in attributes else {})
 
 
 def _at_infinity(name, parts):

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..panorama import Layer, LayeredPanorama
-from .discontinuities import cuts, nearness
+from ..panorama import LayeredPanorama
+from .continuous_pieces import continuous_pieces
+from .discontinuities import nearness
 from .grid import PixelGrid, grid_of
 from .splitting import split_layers
 
@@ -43,7 +44,7 @@ def continuous_layers(
     near = grid.flat(nearness(first.depth))
     layers = split_layers(grid, near, grid.flat(first.radiance), radius, count, behind, colours)
     rest = [*_between(others), *(layer for layer in panorama.layers if layer.name not in set(surfaces))]
-    dealt = [part for layer in rest for part in _dealt(layer, radius)]
+    dealt = [piece for layer in rest for piece in continuous_pieces(layer, radius)]
     place = panorama.world_from_panorama, panorama.origin, radius
     return LayeredPanorama((*layers, *dealt), *place)
 
@@ -64,29 +65,4 @@ def _between(surfaces):
     for number, layer in enumerate(surfaces[:-1], 1):
         inside = layer.mask & np.logical_or.reduce([later.mask for later in surfaces[number:]])
         if inside.any():
-            depth = np.where(inside, layer.depth, np.float32(np.nan))
-            attributes = {name: values for name, values in layer.attributes.items() if name != "mask"}
-            yield Layer(layer.name, layer.mapping, {**attributes, "depth": depth})
-
-
-def _dealt(layer: Layer, radius):
-    """The layer's parts, between which depth jumps, in as few layers as a greedy choice finds."""
-    grid = grid_of(layer)
-    inside = grid.flat(layer.mask)
-    near = np.where(inside, grid.flat(nearness(layer.depth)), np.float32(np.nan))
-    jumps = cuts(grid, near, radius)
-    count, labels = grid.components(inside, ~jumps & inside[grid.neighbours])
-    pixel, other = grid.pairs(jumps & inside & inside[grid.neighbours])
-    apart = np.unique(np.stack([labels[pixel], labels[other]], axis=1), axis=0)
-    beside = [[] for _ in range(count)]
-    for one, another in apart[apart[:, 0] != apart[:, 1]].tolist():
-        beside[one].append(another)
-    chosen = np.full(count + 1, -1)
-    for part in np.argsort(-np.bincount(labels[inside], minlength=count)):
-        taken = {chosen[another] for another in beside[part]}
-        chosen[part] = next(k for k in range(count) if k not in taken)
-    for number in range(chosen.max() + 1):
-        mask = grid.image(inside & (chosen[labels] == number))
-        depth = np.where(mask, layer.depth, np.float32(np.nan))
-        name = layer.name if number == 0 else f"{layer.name}, part {number + 1}"
-        yield Layer(name, layer.mapping, {**layer.attributes, "depth": depth})
+            yield layer.within(inside)

@@ -77,10 +77,11 @@ def creases(grid: PixelGrid, near: np.ndarray, least_deg: float = CREASE_DEG) ->
         _, a, b, c, d, _ = values
         before, after, step = places
         slope_before, slope_after = (b - a) / step, (d - c) / step
-        angle_before = np.arctan2(slope_before, b - slope_before * before)
-        angle_after = np.arctan2(slope_after, c - slope_after * after)
+        foot_before, foot_after = b - slope_before * before, c - slope_after * after
+        turn = foot_before * slope_after - slope_before * foot_after  # the sine of the angle
+        along = foot_before * foot_after + slope_before * slope_after  # its cosine, as much too long
         with np.errstate(invalid="ignore"):
-            return angle_after - angle_before > least
+            return turn * np.cos(least) > along * np.sin(least)
 
     return _by_slots(grid, near, hollow)
 

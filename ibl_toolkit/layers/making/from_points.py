@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..panorama import EQUIRECTANGULAR, Layer, LayeredPanorama, refuse_other_place
+from ..panorama import EQUIRECTANGULAR, LayeredPanorama, refuse_other_place
 from .discontinuities import cuts, smoothed
 from .flood import flood
 from .grid import PixelGrid
@@ -66,7 +66,8 @@ def layers_from_points(
     near, filled, unknown = _closed(grid, found, hole_px, radius)
     near = smoothed(grid, near, cuts(grid, near, radius))
     layers = split_layers(grid, near, filled, radius, count, found.behind, found.behind_colours)
-    layers = tuple(kept for layer in layers if (kept := _without(grid, layer, unknown)) is not None)
+    known = grid.image(~unknown)
+    layers = tuple(layer.within(known) for layer in layers if (layer.mask & known).any())
     return LayeredPanorama(layers, world_from_panorama, np.asarray(origin, np.float64), radius)
 
 
@@ -110,11 +111,3 @@ def _closed(grid, found, hole_px, radius):
     unknown = np.zeros(grid.size, dtype=bool)
     unknown[missing] = far > hole_px / 2 * grid.pixel
     return near, colours, unknown
-
-
-def _without(grid, layer, unknown):
-    """The layer without what is unknown; None if nothing is left."""
-    depth = np.where(grid.image(unknown), np.float32(np.nan), layer.depth)
-    if np.isnan(depth).all():
-        return None
-    return Layer(layer.name, layer.mapping, {**layer.attributes, "depth": depth})

@@ -35,11 +35,12 @@ def parallax(radius: float, nearer: np.ndarray, farther: np.ndarray) -> np.ndarr
 def regions(grid: PixelGrid, near, jumps, hollows, radius: float) -> tuple[int, np.ndarray]:
     """How many regions there are, and that of every pixel (size,), int32; no jump is inside of one.
 
-    near: (size,) 1/depth. jumps, hollows: (4, size), of `cuts` and `creases`. Curves of both sorts that end
+    near: (size,) 1/depth, NaN outside of the domain, where the region is -1. jumps, hollows: (4, size), of
+    `cuts` and `creases`. Curves of both sorts that end
     less than 4 px from another are joined. Where a curve of jumps ends in the midst of a surface, the near
     side gets a region of its own, as wide as the parallax there.
     """
-    count, labels = _between_curves(grid, ~(jumps | hollows), ~jumps)
+    count, labels = _between_curves(grid, ~np.isnan(near), ~(jumps | hollows), ~jumps)
     for _ in range(_ROUNDS):
         _, other = _inner_jumps(grid, labels, near, jumps)
         _give_away(grid, labels, np.unique(other), ~jumps)
@@ -53,8 +54,9 @@ def regions(grid: PixelGrid, near, jumps, hollows, radius: float) -> tuple[int, 
     return count + len(np.unique(pixel)), labels
 
 
-def _between_curves(grid, joined, whole):
-    """Parts between the curves: found away from them, so that small gaps are closed, then grown up to them.
+def _between_curves(grid, inside, joined, whole):
+    """Parts of the domain between the curves: found away from them, so that small gaps are closed, then grown
+    up to them.
 
     joined: slots that no curve is between; whole: those without a jump, by which pixels that lie between two
     curves of creases join a part beside them.
@@ -62,18 +64,18 @@ def _between_curves(grid, joined, whole):
     near_curve = ~joined.all(axis=0)
     for _ in range(_JOINED_PX):
         near_curve = near_curve | near_curve[grid.neighbours].any(axis=0)
-    count, labels = grid.components(~near_curve, joined)
+    count, labels = grid.components(inside & ~near_curve, joined)
     for ways in (joined, whole):
-        _grow(grid, labels, ways)
-    left = labels < 0
+        _grow(grid, labels, inside, ways)
+    left = inside & (labels < 0)
     more, found = grid.components(left, whole)
     labels[left] = found[left] + count
     return count + more, labels
 
 
-def _grow(grid, labels, ways):
-    """Give pixels without a label (-1) one of their neighbours', so far as curves are thick."""
-    left = np.flatnonzero(labels < 0)
+def _grow(grid, labels, inside, ways):
+    """Give the domain's pixels without a label (-1) one of their neighbours', so far as curves are thick."""
+    left = np.flatnonzero(inside & (labels < 0))
     for _ in range(2 * _JOINED_PX + 1):
         there = np.where(ways[:, left], labels[grid.neighbours[:, left]], -1).max(axis=0)
         labels[left] = there

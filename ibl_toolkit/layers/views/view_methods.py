@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..making.continuous_pieces import cut_at_jumps
 from ..meshes.bounded_mesh import bounded_mesh
 from ..panorama import LayeredPanorama
 from ..points.adaptive_splatting import adaptive_view
@@ -14,7 +15,9 @@ from .rendered_view import RenderedView
 
 
 def bounded_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
-    """A view of the meshes of `bounded_mesh`, right to half a pixel of each layer within the radius."""
+    """A view of the meshes of `bounded_mesh`, right to half a pixel of each layer within the radius, and cut
+    where its depth jumps."""
+    panorama = cut_at_jumps(panorama)
     return mesh_view(panorama, camera, (bounded_mesh(layer, panorama.radius) for layer in panorama.layers))
 
 

@@ -1,15 +1,22 @@
 """Layers taken apart where their depth jumps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from box_layers import BOTH, box_depth, box_layer, directions, layer_of, off_the_walls
 
+from expanded_panoramas.ibl_toolkit.layers.export.pieces import MESHES, pieces_of
+from expanded_panoramas.ibl_toolkit.layers.making.continuous_pieces import (
+    continuous_pieces,
+    cut_at_jumps,
+    mesh_pieces,
+)
 from expanded_panoramas.ibl_toolkit.layers.meshes.bounded_mesh import bounded_mesh
-from expanded_panoramas.ibl_toolkit.layers.meshes.continuous_pieces import continuous_pieces
 from expanded_panoramas.ibl_toolkit.layers.meshes.mesh_error import mesh_error
 from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
-from expanded_panoramas.ibl_toolkit.layers.raster.mesh_view import mesh_view
 from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
+from expanded_panoramas.ibl_toolkit.layers.views.view_methods import render_view
 
 BALLS, BALL = np.array([(-1.2, 0.02, 0.1), (0.3, 0.9, -0.7)]), 0.3
 RADIUS = 0.6
@@ -29,11 +36,17 @@ def room_with_balls(mapping):
     return depth, which
 
 
+def painted(mapping):
+    """The room with balls as one layer, white."""
+    depth, _ = room_with_balls(mapping)
+    return Layer("room", mapping, {"depth": depth, "radiance": np.ones((*depth.shape, 3), np.float32)})
+
+
 @pytest.mark.parametrize("mapping", BOTH)
 def test_balls_before_a_room_are_another_piece(mapping):
     depth, which = room_with_balls(mapping)
     pieces = continuous_pieces(layer_of(mapping, depth), RADIUS)
-    assert [piece.name for piece in pieces] == ["room 1", "room 2"]
+    assert [piece.name for piece in pieces] == ["room", "room, part 2"]
     room, balls = (piece.mask for piece in pieces)
     assert (room ^ balls).all()
     assert (balls != (which > 0)).sum() < 0.02 * balls.sum()
@@ -52,12 +65,10 @@ def test_their_meshes_are_right_and_smaller(mapping):
 
 @pytest.mark.parametrize("mapping", BOTH)
 def test_from_beside_no_skin_is_seen_between_a_ball_and_the_wall(mapping):
-    depth, _ = room_with_balls(mapping)
-    attributes = {"depth": depth, "radiance": np.ones((*depth.shape, 3), np.float32)}
-    pieces = continuous_pieces(Layer("room", mapping, attributes), RADIUS)
+    """Though they are one layer, as the first of successive surfaces is."""
     camera = Pinhole.looking_at((0.0, 0.4, 0.0), BALLS[0], 50, 96, 96)
-    panorama = LayeredPanorama(pieces, np.eye(3), np.zeros(3), RADIUS)
-    view = mesh_view(panorama, camera, [bounded_mesh(piece, RADIUS) for piece in pieces])
+    panorama = LayeredPanorama((painted(mapping),), np.eye(3), np.zeros(3), RADIUS)
+    view = render_view(panorama, camera, "mesh")
     seen = ~view.holes
     points = camera.eye + camera.directions()[seen] * view.depth[seen, None]
     off_balls = np.min([np.abs(np.linalg.norm(points - ball, axis=1) - BALL) for ball in BALLS], axis=0)
@@ -81,9 +92,53 @@ def test_dust_without_jumps_is_one_piece():
     assert (dust.mask == inside).all()
 
 
-def test_infinity_is_no_piece():
-    depth = box_depth("equirectangular", 64)
-    depth[:16] = np.inf
-    (piece,) = continuous_pieces(layer_of("equirectangular", depth), 1.0)
-    assert (piece.mask == np.isfinite(depth)).all()
-    assert continuous_pieces(layer_of("equirectangular", np.full_like(depth, np.inf)), 1.0) == ()
+def test_what_lies_at_infinity_behind_a_ball_is_parted_from_it():
+    depth, which = room_with_balls("equirectangular")
+    depth = np.where(which > 0, depth, np.inf).astype(np.float32)
+    sky, balls = continuous_pieces(layer_of("equirectangular", depth), RADIUS)
+    assert (sky.mask == (which == 0)).all()
+    assert (balls.mask == (which > 0)).all()
+
+
+def test_a_domain_smaller_than_where_depth_is_known_stays_so():
+    depth, which = room_with_balls("equirectangular")
+    left = np.arange(depth.shape[1]) < 200
+    pieces = continuous_pieces(layer_of("equirectangular", depth, left & np.ones_like(which, bool)), RADIUS)
+    assert (np.sum([piece.mask for piece in pieces], axis=0) == left).all()
+    assert len(pieces) == 2
+
+
+def test_names_that_are_there_are_not_given_again():
+    room = painted("equirectangular")
+    panorama = LayeredPanorama((room, replace(room, name="room, part 2")), np.eye(3), np.zeros(3), RADIUS)
+    names = [layer.name for layer in cut_at_jumps(panorama).layers]
+    assert names == ["room", "room, part 3", "room, part 2", "room, part 2, part 2"]
+
+
+@pytest.mark.parametrize("mesh", ["quadtree", "grid"])
+@pytest.mark.parametrize("mapping", BOTH)
+def test_no_exported_triangle_joins_a_ball_to_the_wall(mapping, mesh):
+    pieces = pieces_of(
+        LayeredPanorama((painted(mapping),), np.eye(3), np.zeros(3), RADIUS), 1.0, MESHES[mesh]
+    )
+    assert [piece.name for piece in pieces] == ["room", "room, part 2"]
+    for piece in pieces:
+        distance = np.linalg.norm(piece.points, axis=1)[piece.triangles]
+        assert (distance.max(axis=1) / distance.min(axis=1)).max() < 1.4
+
+
+def test_an_exported_mesh_that_goes_beyond_its_piece_is_masked_by_it():
+    room = painted("equirectangular")
+    pieces = pieces_of(LayeredPanorama((room,), np.eye(3), np.zeros(3), RADIUS), 1.0, MESHES["mesh"])
+    alpha = [piece.texture.pixels[..., 3] > 0 for piece in pieces]
+    assert (alpha[0] != alpha[1]).all()
+    assert alpha[1].sum() == mesh_pieces(room, RADIUS)[1].mask.sum()
+
+
+def test_meshes_keep_narrow_sheets():
+    """A band at 0.99 of the walls' distance: from within 1.8 m its rim opens by 0.5°, over a pixel."""
+    room = box_layer("equirectangular", 1024)
+    band = np.abs(directions("equirectangular", 1024)[..., 2]) < 0.2
+    layer = layer_of("equirectangular", np.where(band, 0.99 * room.depth, room.depth).astype(np.float32))
+    assert len(continuous_pieces(layer, 1.8)) > 1
+    assert mesh_pieces(layer, 1.8) == (layer,)
