@@ -49,13 +49,13 @@ class PANORAMA_PT_device_shadows(Step, bpy.types.Panel):
         for index, light in enumerate(preview.lights):
             row = column.row(align=True)
             row.prop(light, "light", text="")
-            row.operator("panorama.remove_shadow_light", text="", icon="X").index = index
+            row.operator("panorama.remove_shadow_light", text="", icon="REMOVE").index = index
         if not lights_of(preview):
             names = ", ".join(f"'{light.name}'" for light in candidates(context)[:MOST_LIGHTS])
-            self.say(context, f"Without a choice: {names}" if names else "")
+            self.say(context, f"None chosen, so {names}" if names else "")
         if len(preview.lights) < MOST_LIGHTS:
             column = self.layout.column(align=True)
-            column.prop(preview, "another", text="", icon="LIGHT")
+            column.prop(preview, "another", text="", icon="LIGHT", placeholder="Add Light")
             row = column.row(align=True)
             for which, text in (("SELECTED", "Add Selected"), ("VISIBLE", "Add All Visible")):
                 row.operator("panorama.add_shadow_lights", text=text).which = which

@@ -42,15 +42,15 @@ def test_one_light_takes_one_click_and_four_are_the_most(fresh_blend):
     assert "light" not in drawn(bpy)
     shadow_pictures.add_light("POINT")
     sun = shadow_pictures.add_light("SUN")
-    assert "Without a choice: 'SUN'" in drawn(bpy)
+    assert "None chosen, so 'SUN'" in drawn(bpy)
     for thing in bpy.context.scene.objects:
         thing.select_set(thing.type in {"MESH", "LIGHT"})
-    assert "Without a choice: 'POINT', 'SUN'" in drawn(bpy)
+    assert "None chosen, so 'POINT', 'SUN'" in drawn(bpy)
     preview = bpy.context.scene.panorama_shadow_preview
     preview.another = sun
     shown = drawn(bpy)
     assert (shown.count("light"), shown.count("panorama.remove_shadow_light")) == (1, 1)
-    assert not [text for text in shown if text.startswith("Without a choice")]
+    assert not [text for text in shown if text.startswith("None chosen")]
     assert shown.count("panorama.add_shadow_lights") == 2
     for _ in range(3):
         preview.lights.add().light = sun
