@@ -199,6 +199,7 @@ def _result(output, found, kinds, camera, progress):
         "kinds": [label(kind) for kind in kinds],
         "lights": [_light(*one) for one in zip(found.light_names, scene.lights, strict=True)],
         "ambient": [float(value) for value in scene.ambient],
+        "ambient_down": [float(value) for value in scene.from_below],
         "meshes": len(scene.meshes),
         "triangles": sum(len(mesh.triangles) for mesh in scene.meshes),
         "seconds": dict(progress.seconds),

@@ -73,7 +73,8 @@ def still_life(lights=("sun",), roles=("support", "synthetic", "synthetic"), amb
         SceneMesh("box", *outward(*box), roles[1], (0.7, 0.3, 0.2)),
         SceneMesh("ball", *ball, roles[2], (0.2, 0.4, 0.7), normals),
     )
-    return ShadowScene(meshes, [cameras[name] for name in lights], (ambient,) * 3)
+    below = (0.2 * ambient, 0.5 * ambient, ambient)
+    return ShadowScene(meshes, [cameras[name] for name in lights], (ambient,) * 3, below)
 
 
 def outward(points, triangles):

@@ -29,7 +29,8 @@ def lighting_of(
     light_from: str,
     most: int,
 ) -> tuple[list[PageLight], np.ndarray, list[str]]:
-    """The strongest lights on what throws shadows, ``most`` at most; ambient light (3,); warnings.
+    """The strongest lights on what throws shadows, ``most`` at most; ambient light (2, 3) of faces that look
+    up and down; warnings.
 
     panorama: that of the scene's place. light_from: of LIGHT_FROM. Lights that there are too many of, and
     those that throw no shadows, brighten the ambient light. A sun that was picked from the panorama stands
@@ -58,7 +59,7 @@ def lighting_of(
         names = ", ".join(f"'{one.name}'" for one in throwing[most:])
         warnings = [*warnings, f"{names}: only brighten and throw no shadow, for there are more than {most}"]
     left = throwing[most:] + [one for one in found if not one.throws]
-    return throwing[:most], ambient + sum((one.on_floor(middle) for one in left), np.zeros(3)), warnings
+    return throwing[:most], ambient + sum((one.on_faces(middle) for one in left), np.zeros((2, 3))), warnings
 
 
 def _of_panorama(panorama, points, meshes, most):
@@ -71,7 +72,7 @@ def _of_panorama(panorama, points, meshes, most):
         _reach(panorama, [mesh for mesh in meshes if mesh.role == "support"]),
     )
     lights = [PageLight(f"panorama {k}", light) for k, light in enumerate(found.lights, 1)]
-    return lights, np.array(found.ambient), list(found.warnings)
+    return lights, np.array([found.ambient, found.ambient_down]), list(found.warnings)
 
 
 def _reach(panorama, surfaces):
@@ -89,12 +90,13 @@ def _reach(panorama, surfaces):
 
 
 def _ambient(scene, panorama, own, points):
-    """Irradiance (3,) of an upward floor besides the scene's own lights, and warnings."""
+    """Irradiance (2, 3) of faces that look up and down besides the scene's own lights, and warnings."""
     if panorama is None:
         colour, warnings = world_colour(scene)
-        return np.zeros(3) if colour is None else np.pi * colour, warnings
-    whole = floor_irradiance(maps.shrink(panorama.image, LIGHTS_WIDTH), panorama.world_from_panorama[2])
-    picked = sum((one.on_floor(_middle(points)) for one in own if one.is_picked), np.zeros(3))
+        return np.tile(np.zeros(3) if colour is None else np.pi * colour, (2, 1)), warnings
+    image, up = maps.shrink(panorama.image, LIGHTS_WIDTH), panorama.world_from_panorama[2]
+    whole = np.array([floor_irradiance(image, way) for way in (up, -up)])
+    picked = sum((one.on_faces(_middle(points)) for one in own if one.is_picked), np.zeros((2, 3)))
     return np.maximum(whole - picked, 0), []
 
 

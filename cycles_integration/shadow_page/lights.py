@@ -29,10 +29,10 @@ class PageLight:
         _, (distance,) = self.light.camera.to_light(place[None])
         return np.array(self.light.strength) / max(distance, 1e-6) ** 2
 
-    def on_floor(self, place: np.ndarray) -> np.ndarray:
-        """(3,) irradiance of an upward floor at a place (3,) [m]."""
+    def on_faces(self, place: np.ndarray) -> np.ndarray:
+        """(2, 3) irradiance at a place (3,) [m] of faces that look up and down."""
         (to_light,), _ = self.light.camera.to_light(place[None])
-        return self.irradiance(place) * max(to_light[2], 0)
+        return np.outer(np.maximum([to_light[2], -to_light[2]], 0), self.irradiance(place))
 
 
 def own_lights(depsgraph: bpy.types.Depsgraph, points: np.ndarray) -> list[PageLight]:

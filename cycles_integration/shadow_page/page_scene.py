@@ -69,7 +69,7 @@ def page_scene(
         ShadowScene(
             meshes,
             [replace(one.light, camera=view) for one, view in zip(lights, cameras, strict=True)],
-            tuple(ambient),
+            *map(tuple, ambient),
         ),
         camera,
         background,

@@ -3,8 +3,8 @@
 The bright part of the map is cut into regions as `light.extraction` does it, and those that a phone's
 shadows would hardly tell apart become one. Each is a sun in the direction of its region's light or, where the
 distance of what is seen there is known, a lamp at that place. Its strength is the region's vector irradiance
-along that direction. The ambient light is what an upward floor gets of the map besides: so the floor's light
-is the map's, while faces that look elsewhere get the floor's ambient light too.
+along that direction. The ambient light is what a floor and a ceiling get of the map besides, so that theirs
+is the map's; faces that look elsewhere get a mixture of both.
 """
 
 from __future__ import annotations
@@ -37,11 +37,13 @@ FAINT = 0.2
 @dataclass(frozen=True, eq=False)
 class DeviceLights:
     """lights: that which brings most to the floor first. shares: of the floor's light, one for each, as
-    luminance. ambient: (3,) irradiance of an upward floor besides. warnings: a sentence each."""
+    luminance. ambient, ambient_down: (3,) irradiance of faces that look up and down, besides. warnings: a
+    sentence each."""
 
     lights: tuple[SceneLight, ...]
     shares: tuple[float, ...]
     ambient: tuple[float, float, float]
+    ambient_down: tuple[float, float, float]
     warnings: tuple[str, ...] = ()
 
 
@@ -83,18 +85,21 @@ def device_lights(
     directions = np.einsum("c,ncx->nx", LUMINANCE, vectors)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     strengths = np.einsum("ncx,nx->nc", vectors, directions).clip(0)
-    whole = floor_irradiance(image, turn[2])
-    floors = strengths * np.maximum(directions @ turn[2], 0)[:, None]
-    kept = _worth_it(floors @ LUMINANCE / max(whole @ LUMINANCE, 1e-30))
+    whole = np.array([floor_irradiance(image, up) for up in (turn[2], -turn[2])])
+    heights = directions @ turn[2]
+    kept = _worth_it(strengths @ LUMINANCE * heights / max(whole[0] @ LUMINANCE, 1e-30))
     distances = np.full(len(kept), np.inf) if reach is None else reach(directions[list(kept)])
     lights = [
         _light(strengths[k], turn @ directions[k], distance, np.asarray(origin, dtype=np.float64), points)
         for k, distance in zip(kept, distances, strict=True)
     ]
-    ambient = np.maximum(whole - floors[list(kept)].sum(axis=0), 0)
+    by_lights = (strengths * np.maximum(heights, 0)[:, None])[list(kept)].sum(axis=0)  # from above, all
+    above, below = np.maximum(whole - [by_lights, np.zeros(3)], 0)
     share = sum(kept.values())
     faint = f"the lights bring {100 * share:.2g} % of the floor's light: their shadows are faint"
-    return DeviceLights(tuple(lights), tuple(kept.values()), tuple(ambient), (faint,) * (share < FAINT))
+    return DeviceLights(
+        tuple(lights), tuple(kept.values()), tuple(above), tuple(below), (faint,) * (share < FAINT)
+    )
 
 
 def _worth_it(shares):

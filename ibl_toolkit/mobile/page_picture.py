@@ -84,7 +84,8 @@ def _light(scene, settings, corners, at, normals):
         cosine = np.maximum((to_light * normals).sum(axis=1), 0)
         whole += (cosine / distance**2)[:, None] * strength
     kept = whole * remaining_light(maps, strengths, at, normals)
-    return whole + np.array(scene.ambient), kept + np.array(scene.ambient)
+    ambient = scene.ambient_on(normals)
+    return whole + ambient, kept + ambient
 
 
 def _looked_up(background, directions, pixels):

@@ -90,7 +90,10 @@ class SceneLight:
 
 @dataclass(frozen=True, eq=False)
 class ShadowScene:
-    """Meshes, 1 to MOST_LIGHTS lights, and the irradiance (3,) without them [W/m²], in shadow too.
+    """Meshes, 1 to MOST_LIGHTS lights, and the irradiance without them [W/m²], in shadow too.
+
+    ambient: (3,) of faces that look up, ambient_down: of such that look down, None for as much; between them
+    it changes with the normal's z.
 
     Raises: ValueError for no meshes, too few or many lights, and ambient light that is negative.
     """
@@ -98,14 +101,26 @@ class ShadowScene:
     meshes: Sequence[SceneMesh]
     lights: Sequence[SceneLight]
     ambient: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ambient_down: tuple[float, float, float] | None = None
 
     def __post_init__(self):
         if not self.meshes:
             raise ValueError("the scene has no meshes: nothing could throw a shadow or receive one")
         if not 1 <= len(self.lights) <= MOST_LIGHTS:
             raise ValueError(f"scene with {len(self.lights)} lights must have 1 to {MOST_LIGHTS}")
-        if np.shape(self.ambient) != (3,) or not all(0 <= v < np.inf for v in self.ambient):
-            raise ValueError(f"ambient light {self.ambient} must be three numbers, 0 or more")
+        for light in (self.ambient, self.from_below):
+            if np.shape(light) != (3,) or not all(0 <= v < np.inf for v in light):
+                raise ValueError(f"ambient light {light} must be three numbers, 0 or more")
+
+    @property
+    def from_below(self) -> tuple[float, float, float]:
+        """The ambient light (3,) of faces that look down."""
+        return self.ambient if self.ambient_down is None else self.ambient_down
+
+    def ambient_on(self, normals: np.ndarray) -> np.ndarray:
+        """Ambient light (n, 3) of faces with normals (n, 3)."""
+        share = 0.5 + 0.5 * np.asarray(normals)[:, 2:]
+        return share * np.array(self.ambient) + (1 - share) * np.array(self.from_below)
 
 
 def scene_glb(
@@ -164,6 +179,7 @@ def _extras(scene, settings, camera, background):
     return {
         "lights": [_light(light) for light in scene.lights],
         "ambient": [float(v) for v in scene.ambient],
+        "ambient_down": [float(v) for v in scene.from_below],
         "shadow_settings": [_kind(one) for one in settings],
         "camera": {
             "eye": np.asarray(camera.eye, dtype=float).tolist(),

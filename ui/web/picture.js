@@ -45,6 +45,7 @@ export class Picture {
       panorama_from_world: turn,
       origin: { "3fv": background.origin },
       ambient: { "3fv": scene.ambient },
+      ambient_down: { "3fv": scene.ambient_down },
       exposure: { "1f": background.exposure },
     });
   }

@@ -8,9 +8,10 @@ in vec3 position;
 in vec3 upright;
 uniform bool is_support;
 uniform vec3 albedo;
-uniform vec3 ambient;  /* irradiance without the lights [W/m²] */
+uniform vec3 ambient;      /* irradiance without the lights [W/m²], looking up */
+uniform vec3 ambient_down; /* looking down */
 uniform float exposure;
-uniform vec3 origin;   /* of the panorama, in the world [m] */
+uniform vec3 origin;       /* of the panorama, in the world [m] */
 out vec4 colour;
 
 /* 0 in shadow, 1 lit; beside the map all is lit. */
@@ -28,8 +29,8 @@ float visibility(int light)
 void main()
 {
   vec3 normal = normalize(upright);
-  vec3 kept = ambient;
-  vec3 whole = ambient;
+  vec3 kept = mix(ambient_down, ambient, 0.5 + 0.5 * normal.z);
+  vec3 whole = kept;
   for (int light = 0; light < LIGHTS; light++) {
     vec3 away = lights[light].perspective ? lights[light].eye - position : lights[light].to_sun;
     float cosine = dot(away, normal) / length(away);

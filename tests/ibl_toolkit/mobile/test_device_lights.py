@@ -64,6 +64,7 @@ def test_a_floor_has_the_light_of_the_map_in_any_pose():
         found = device_lights(image, POINTS, world_from_panorama=turn)
         np.testing.assert_allclose(on_floor(found), truth, rtol=1e-4)
         np.testing.assert_allclose(floor_irradiance(image, turn[2]), truth, rtol=1e-6)
+        np.testing.assert_allclose(found.ambient_down, floor_irradiance(image, -turn[2]), rtol=1e-6)
 
 
 def test_the_ambient_light_is_what_the_map_has_beside_its_lamps():

@@ -118,6 +118,10 @@ def test_flat_normals_point_where_triangles_turn_left():
         (lambda: ShadowScene([], still_life().lights), "no meshes"),
         (lambda: ShadowScene(still_life().meshes, []), "0 lights must have 1 to 8"),
         (lambda: ShadowScene(still_life().meshes, still_life().lights, (0, 0, np.nan)), "ambient"),
+        (
+            lambda: ShadowScene(still_life().meshes, still_life().lights, (0, 0, 0), (0, -1, 0)),
+            "ambient light (0, -1, 0)",
+        ),
         (lambda: Background(np.ones((2, 4, 3)), "video"), "'video' must be one of panorama, photo"),
         (lambda: Background(np.ones((2, 5, 3))), "width 5 px must have an even one"),
         (lambda: Background(np.ones((2, 4))), "must be (H, W, 3)"),
