@@ -3,6 +3,7 @@
 from contextlib import ExitStack, contextmanager
 
 from ..ibl_toolkit.images import read_rgbd
+from ..ibl_toolkit.layers.files.storage import read_layers
 from ..ibl_toolkit.layers.making.from_points import layers_from_points
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
 from ..ibl_toolkit.layers.making.ply import read_ply
@@ -30,6 +31,12 @@ def from_points(path, options, progress):
         return layers_from_points(
             cloud.points, cloud.colours, origin, width, options.radius, count=options.layers
         )
+
+
+def from_folder(path, options, progress):
+    """Layers that are there, to be sorted or stored in another way."""
+    with progress.step("reading"):
+        return read_layers(path)
 
 
 def from_set(path, options, progress):

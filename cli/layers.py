@@ -5,15 +5,24 @@ from pathlib import Path
 
 from ..ibl_toolkit.layers.files.folder import refuse_other_folder, write_folder
 from ..ibl_toolkit.layers.making.check import check_layers
+from ..ibl_toolkit.layers.making.sorting import Classes, sorted_layers
 from ..ibl_toolkit.layers.making.uncovered import share_of_sphere
-from .layer_makers import SAMPLES, WIDTH, from_points, from_rgbd, from_scene, from_set
-from .options import positive, whole_number
+from .job import naming
+from .layer_makers import SAMPLES, WIDTH, from_folder, from_points, from_rgbd, from_scene, from_set
+from .options import positive, rising, whole_number
 from .progress import Progress
 
-INPUT = "RGB-D panorama (.exr), points (.ply), panorama set (.json) or scene (.blend)"
+INPUT = "RGB-D panorama (.exr), points (.ply), panorama set (.json), scene (.blend) or folder of layers"
 SUMMARY = "make a panorama in layers: what is seen from its origin, and what hides behind"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "FOLDER", "_layers", True
-MAKERS = {".exr": from_rgbd, ".ply": from_points, ".json": from_set, ".blend": from_scene}
+FOLDER = "a folder"
+MAKERS = {
+    ".exr": from_rgbd,
+    ".ply": from_points,
+    ".json": from_set,
+    ".blend": from_scene,
+    FOLDER: from_folder,
+}
 
 
 @dataclass(frozen=True)
@@ -21,7 +30,8 @@ class LayersOptions:
     """The options of the verb, by the same names; None: its default.
 
     radius, origin: [m]. samples, seed, denoise: of renders. surfaces: a layer for each surface along
-    the rays, whose depth jumps. collections: of a scene, a layer for each.
+    the rays, whose depth jumps. collections: of a scene, a layer for each. by_depth [m], by_geometry,
+    infinity, flatten: what the layers are sorted by, see `Classes`.
     """
 
     radius: float | None = None
@@ -33,6 +43,10 @@ class LayersOptions:
     origin: tuple[float, float, float] | None = None
     collections: tuple[str, ...] = ()
     surfaces: bool = False
+    by_depth: tuple[float, ...] = ()
+    by_geometry: bool = False
+    infinity: bool = False
+    flatten: bool = False
     levels: int = 1
     ldr: bool = False
 
@@ -43,6 +57,7 @@ IDLE = {
     ".ply": (*RENDERED, "collections"),
     ".json": ("origin", "collections"),
     ".blend": (),
+    FOLDER: (*RENDERED, "radius", "layers", "width", "origin", "collections"),
 }
 """Options that do nothing, by what the layers are made of."""
 OF_SURFACES = ("layers", "surfaces")
@@ -73,6 +88,10 @@ def add_options(parser):
         default=[],
         help="of a scene: a layer for each collection that is named, in place of one for each surface",
     )
+    add("--by-depth", metavar="D,D,…", type=rising, default=(), help="part layers at these distances [m]")
+    add("--by-geometry", action="store_true", help="part the background: floor, ceiling, walls, lights")
+    add("--infinity", action="store_true", help="what moves by less than a pixel: a layer at infinity")
+    add("--flatten", action="store_true", help="thin ranges of depth: one distance, or one plane")
     add("--levels", metavar="N", type=whole_number(1, 16), default=1, help="mip levels (default: 1)")
     add("--ldr", action="store_true", help="colours as 8-bit PNG")
 
@@ -91,23 +110,28 @@ def make_layers(input_path, output, options=None, progress=None):
     """
     options, progress = options or LayersOptions(), progress or Progress()
     path, output = Path(input_path), Path(output)
-    make = MAKERS.get(path.suffix.lower())
-    if make is None:
+    kind = FOLDER if path.is_dir() else path.suffix.lower()
+    if kind not in MAKERS:
         raise ValueError(f"{path}: must be {INPUT}")
-    _refuse_options(path, options)
+    _refuse_options(path, kind, options)
     try:
         refuse_other_folder(output)
     except ValueError as error:
         raise ValueError(f"-o {error}") from None
-    panorama = make(path, options, progress)
+    panorama = MAKERS[kind](path, options, progress)
+    classes = Classes(options.by_depth, options.by_geometry, options.infinity, options.flatten)
+    order = None
+    if classes:
+        with progress.step("sorting"), naming(path):
+            panorama, order = sorted_layers(panorama, classes)
     with progress.step("writing"):
         write_folder(panorama, output, levels=options.levels, ldr=options.ldr)
-    return _result(panorama, progress)
+    return _result(panorama, order, progress)
 
 
-def _refuse_options(path, options):
+def _refuse_options(path, kind, options):
     """Options that would do nothing."""
-    idle = IDLE[path.suffix.lower()] or (OF_SURFACES if options.collections else ())
+    idle = IDLE[kind] or (OF_SURFACES if options.collections else ())
     for name in idle:
         if getattr(options, name) not in (None, False, ()) and getattr(options, name) != []:
             option = "--collection" if name == "collections" else f"--{name}"
@@ -116,9 +140,10 @@ def _refuse_options(path, options):
             )
 
 
-def _result(panorama, progress):
+def _result(panorama, order, progress):
     with progress.step("checking"):
         report = check_layers(panorama)
+    hides = {} if order is None else {"hides": {name: list(names) for name, names in order.hides.items()}}
     return {
         "radius": float(panorama.radius),
         "origin": [float(x) for x in panorama.origin],
@@ -131,6 +156,7 @@ def _result(panorama, progress):
             }
             for layer in panorama.layers
         ],
+        **hides,
         "seconds": dict(progress.seconds),
         "warnings": list(report.warnings),
     }

@@ -3,6 +3,7 @@
 import argparse
 import math
 import re
+from itertools import pairwise
 
 _RANGE = re.compile(r"(-?\d+)(?:-(-?\d+))?(?:,(\d+))?")
 _MANY = 2**31 - 1
@@ -105,6 +106,18 @@ def one_or_three(text):
     numbers = tuple(_number(part) for part in text.split(","))
     if len(numbers) not in (1, 3) or None in numbers:
         raise argparse.ArgumentTypeError(f"{text!r}: must be a number, or R,G,B")
+    return numbers
+
+
+def rising(text):
+    """Numbers above 0 with commas, each larger than the one before -> tuple.
+
+    >>> rising("1,2.5")
+    (1.0, 2.5)
+    """
+    numbers = tuple(positive(part) for part in text.split(","))
+    if any(later <= earlier for earlier, later in pairwise(numbers)):
+        raise argparse.ArgumentTypeError(f"{text!r}: must rise from number to number")
     return numbers
 
 

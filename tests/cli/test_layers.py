@@ -71,6 +71,31 @@ def test_without_attributes_it_is_level_at_the_world_origin(tmp_path, panorama):
     assert json.loads(out)["radius"] == pytest.approx(CARD / 2)
 
 
+def test_layers_are_sorted_into_classes(rgbd_file, tmp_path, panorama):
+    classes = ["--by-geometry", "--by-depth", "1,2", "--infinity", "--flatten"]
+    made = tmp_path / "made"
+    status, out, _ = panorama("layers", rgbd_file, "-o", made, "--radius", 0.5, *classes, "--json")
+    result = json.loads(out)
+    assert status == 0
+    names = [layer["name"] for layer in result["layers"]]
+    assert names == [layer.name for layer in read_layers(made).layers]
+    assert names[-1] == "front 1, from 1 m to 2 m"
+    assert "background, walls, from 2 m" in names
+    assert set(result["hides"]["front 1, from 1 m to 2 m"]) <= set(names[:-1])
+    assert "sorting" in result["seconds"]
+
+
+def test_a_folder_of_layers_is_sorted_in_its_place(rgbd_file, tmp_path, panorama):
+    folder = tmp_path / "layers"
+    panorama("layers", rgbd_file, "-o", folder, "--radius", 0.5)
+    before = read_layers(folder)
+    status, out, err = panorama("layers", folder, "-o", folder, "--by-depth", 2)
+    assert (status, err) == (0, [])
+    assert [layer.name for layer in read_layers(folder).layers] == ["background, from 2 m", "front 1, to 2 m"]
+    assert read_layers(folder).radius == before.radius
+    assert len(out.splitlines()) == 3
+
+
 def test_points_become_layers(tmp_path, panorama):
     image, depth = card_picture()
     places = depth[..., None] * equirectangular.pixel_directions(WIDTH, WIDTH // 2) + np.float32([1, 0, 2])
@@ -196,6 +221,9 @@ def test_a_set_is_rebuilt_and_shows_its_photograph(fresh_blend, room, panorama):
         (["map.exr", "-o", "new", "--samples", "3"], "--samples: does nothing for map.exr"),
         (["a.ply", "-o", "new", "--denoise"], "--denoise: does nothing for a.ply"),
         (["map.exr", "-o", "new", "--width", "64"], "--width: does nothing for map.exr"),
+        ([".", "-o", "new", "--radius", "1"], "--radius: does nothing for ."),
+        ([".", "-o", "new"], "panorama.xml"),
+        (["map.exr", "-o", "new", "--by-depth", "2,1"], "'2,1': must rise from number to number"),
         (["map.exr", "-o", "new", "--collection", "a"], "--collection: does nothing for map.exr"),
         (["room.json", "-o", "new", "--origin", "0", "0", "1"], "--origin: does nothing for room.json"),
         (
