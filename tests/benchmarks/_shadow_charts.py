@@ -17,9 +17,9 @@ plt.rcParams.update({"font.size": 9, "axes.spines.top": False, "axes.spines.righ
 def draw(document, path):
     """Six panels."""
     figure, axes = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
-    _lamp(axes[0, 0], document["lamp"])
-    _offset(axes[0, 1], document["offset"], "acne", "mean darkness of what is lit")
-    _offset(axes[0, 2], document["offset"], "gap_mm", "gap at the foot of a box [mm]")
+    _offset(axes[0, 0], document["offset"], "acne", "mean darkness of what is lit")
+    _offset(axes[0, 1], document["offset"], "gap_mm", "gap at the foot of a box [mm]")
+    _candidates(axes[0, 2], document["candidates"])
     _range(
         axes[1, 0], document["range"], "bleeding", "light on the worst hundredth of the dark", ("vsm", "evsm")
     )
@@ -27,28 +27,6 @@ def draw(document, path):
     _maps(axes[1, 2], document["maps"])
     figure.savefig(path, dpi=110)
     plt.close(figure)
-
-
-def _lamp(axis, rows):
-    styles = {
-        "hard": ("hard", ()),
-        "PCF 3 × 3": ("pcf", (2, 2)),
-        "PCF as wide": ("pcf", ()),
-        "VSM as wide": ("vsm", ()),
-        "EVSM as wide": ("evsm", ()),
-        "EVSM as wide, 512": ("evsm", (4, 2)),
-        "EVSM as wide, 256": ("evsm", (1, 1)),
-    }
-    for name, (method, dashes) in styles.items():
-        own = [row for row in rows if row["name"] == name]
-        place, error = [row["diameter_deg"] for row in own], [row["rms"] for row in own]
-        axis.plot(place, error, color=COLOURS[method], dashes=dashes, marker=".", label=name)
-    axis.set_xscale("symlog", linthresh=0.25)
-    axis.set_xticks([0, 0.25, 0.53, 1, 2, 4, 8, 16], ["0", ".25", "sun", "1", "2", "4", "8", "16"])
-    axis.set(
-        title="Error against a round lamp, 16 bits", xlabel="diameter [°]", ylabel="rms error", ylim=(0, None)
-    )
-    axis.legend(frameon=False, fontsize=8, handlelength=2.8)
 
 
 def _offset(axis, rows, key, label):
@@ -125,6 +103,22 @@ def _maps(axis, rows):
     axis.set_yticks([0.03, 0.05, 0.1, 0.2], ["0.03", "0.05", "0.1", "0.2"])
     axis.set_xticks([0.0625, 0.25, 1, 4, 16], ["1/16", "1/4", "1", "4", "16"])
     axis.legend(frameon=False, fontsize=7.5, ncols=3, loc="upper left", handlelength=2.8)
+
+
+def _candidates(axis, rows):
+    least = 5e-4
+    for place, row in enumerate(rows):
+        colour = COLOURS["evsm"] if "ours" in row["name"] else "#bbbbbb"
+        axis.barh(place, row["bleeding"], color=colour)
+        axis.text(1.1 * least, place, f"{row['name']}, {row['bits']} bits", va="center")
+    axis.invert_yaxis()
+    axis.set_yticks([])
+    axis.set(
+        title="Other maps: light bleeding, window 9",
+        xlabel="light on the worst hundredth of the dark",
+        xscale="log",
+        xlim=(least, 1),
+    )
 
 
 def draw_pictures(pictures, side, path):
