@@ -1,6 +1,6 @@
 """Angular error of light directions from photographs of balls with known lights.
 
-Writes docs/charts/probe_ball.json and probe_ball.png.
+Writes docs/charts/probe_ball.json and probe_ball.png, and docs/images/probe_photo.jpg, the manual's example.
 """
 
 import functools
@@ -9,11 +9,23 @@ import pathlib
 import sys
 import time
 
+import cv2
 import matplotlib
 import numpy as np
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-from probe_photos import Lamp, angle_deg, ball_of_pixels, degraded, desk_before, hdr, ldr, photograph, unit
+from probe_photos import (
+    Lamp,
+    angle_deg,
+    ball_of_pixels,
+    codes,
+    degraded,
+    desk_before,
+    hdr,
+    ldr,
+    photograph,
+    unit,
+)
 
 from expanded_panoramas.ibl_toolkit.mobile.probe import (
     Ball,
@@ -31,7 +43,8 @@ from expanded_panoramas.ibl_toolkit.mobile.probe.samples import in_picture, on_b
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-CHARTS = pathlib.Path(__file__).resolve().parents[2] / "docs" / "charts"
+DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
+CHARTS = DOCS / "charts"
 KINDS = {"mirror": "mirror ball", "diffuse": "diffuse ball"}
 CASES = 10
 DIAMETER, NOISE, BLUR, LIGHTS = 100, 0.02, 0.7, 1
@@ -57,7 +70,8 @@ HIDDEN_DEG = {"mirror": 30.0, "diffuse": 65.0}
 
 
 def main():
-    """Measure and write both files."""
+    """Measure, and write the files."""
+    write_example()
     document = {
         "definitions": DEFINITIONS,
         "by_diameter_px": [row(kind, diameter=d) for kind in KINDS for d in DIAMETERS],
@@ -75,6 +89,19 @@ def main():
     (CHARTS / "probe_ball.json").write_text(text + "\n", encoding="utf-8")
     draw(document)
     print(text)
+
+
+def write_example():
+    """A mirror ball of 10 cm under a warm and a cold lamp, 12 cm to the right of a marker of 10 cm."""
+    camera, desk = PhotoCamera.from_35mm(50, 960, 720), desk_before()
+    ball = Ball(desk.to_camera((0.12, 0.02, 0.05)), 0.05)
+    lamps = [
+        Lamp(desk.camera_from_marker @ unit(direction), 4, radiance)
+        for direction, radiance in (([0.5, 0.3, 0.8], (60, 54, 30)), ([-0.7, 0.1, 0.6], (15, 15, 30)))
+    ]
+    image = degraded(photograph(camera, ball, lamps, desk=desk, fine=2), blur_px=BLUR, noise=NOISE)
+    picture = (codes(image)[..., ::-1] * 255).round().astype(np.uint8)
+    cv2.imwrite(str(DOCS / "images" / "probe_photo.jpg"), picture, [cv2.IMWRITE_JPEG_QUALITY, 92])
 
 
 _traced = {}
