@@ -6,7 +6,9 @@ from ..ibl_toolkit.images import read_rgbd
 from ..ibl_toolkit.layers.files.storage import read_layers
 from ..ibl_toolkit.layers.making.from_points import layers_from_points
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
+from ..ibl_toolkit.layers.making.from_shots import layers_from_shots
 from ..ibl_toolkit.layers.making.ply import read_ply
+from ..ibl_toolkit.layers.making.shots import read_shots
 from . import blender
 from .job import naming, open_job, place_in, rebuild
 
@@ -30,6 +32,16 @@ def from_points(path, options, progress):
     with progress.step("layers"), naming(path):
         return layers_from_points(
             cloud.points, cloud.colours, origin, width, options.radius, count=options.layers
+        )
+
+
+def from_shots(path, options, progress):
+    """Layers of RGB-D shots."""
+    with progress.step("reading"):
+        shots = read_shots(path)
+    with progress.step("layers"), naming(path):
+        return layers_from_shots(
+            shots, options.width or WIDTH, options.radius, origin=options.origin, count=options.layers
         )
 
 

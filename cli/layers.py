@@ -5,23 +5,37 @@ from pathlib import Path
 
 from ..ibl_toolkit.layers.files.folder import refuse_other_folder, write_folder
 from ..ibl_toolkit.layers.making.check import check_layers
+from ..ibl_toolkit.layers.making.shots import is_shots_file
 from ..ibl_toolkit.layers.making.sorting import Classes, sorted_layers
 from ..ibl_toolkit.layers.making.uncovered import share_of_sphere
 from .job import naming
-from .layer_makers import SAMPLES, WIDTH, from_folder, from_points, from_rgbd, from_scene, from_set
+from .layer_makers import (
+    SAMPLES,
+    WIDTH,
+    from_folder,
+    from_points,
+    from_rgbd,
+    from_scene,
+    from_set,
+    from_shots,
+)
 from .options import positive, rising, whole_number
 from .progress import Progress
 
-INPUT = "RGB-D panorama (.exr), points (.ply), panorama set (.json), scene (.blend) or folder of layers"
+INPUT = (
+    "RGB-D panorama (.exr), points (.ply), list of RGB-D shots or panorama set (.json), scene (.blend) or "
+    "folder of layers"
+)
 SUMMARY = "make a panorama in layers: what is seen from its origin, and what hides behind"
 OUTPUT, SUFFIX, NEEDS_OUTPUT = "FOLDER", "_layers", True
-FOLDER = "a folder"
+FOLDER, SHOTS = "a folder", "shots"
 MAKERS = {
     ".exr": from_rgbd,
     ".ply": from_points,
     ".json": from_set,
     ".blend": from_scene,
     FOLDER: from_folder,
+    SHOTS: from_shots,
 }
 
 
@@ -57,6 +71,7 @@ IDLE = {
     ".ply": (*RENDERED, "collections"),
     ".json": ("origin", "collections"),
     ".blend": (),
+    SHOTS: (*RENDERED, "collections"),
     FOLDER: (*RENDERED, "radius", "layers", "width", "origin", "collections"),
 }
 """Options that do nothing, by what the layers are made of."""
@@ -68,7 +83,7 @@ def add_options(parser):
     add = parser.add_argument
     add("--radius", metavar="R", type=positive, help="how far from the origin views will be [m]")
     add("--layers", metavar="N", type=whole_number(1), help="layers at most")
-    add("--width", metavar="W", type=whole_number(8, 65536), help=f"of renders and points [px] ({WIDTH})")
+    add("--width", metavar="W", type=whole_number(8, 65536), help=f"of renders, points, shots [px] ({WIDTH})")
     add("--samples", metavar="N", type=whole_number(1), help=f"of renders: paths per pixel ({SAMPLES})")
     add("--seed", metavar="S", type=whole_number(0), help="of renders: another gives other noise (0)")
     add("--denoise", action="store_true", help="of renders: remove noise, and some detail with it")
@@ -78,7 +93,7 @@ def add_options(parser):
         metavar=("X", "Y", "Z"),
         type=float,
         nargs=3,
-        help="of a scene (its camera's) or of points (0 0 0)",
+        help="of a scene (its camera's), of shots (the first's) or of points (0 0 0)",
     )
     add(
         "--collection",
@@ -105,12 +120,13 @@ def run(input_path, output, options, progress):
 def make_layers(input_path, output, options=None, progress=None):
     """Write a panorama in layers into the folder `output` -> its layers, radius, origin and seconds.
 
-    input_path: an RGB-D panorama (.exr), points (.ply), a panorama set (.json), or a scene (.blend). A new
-    folder is there whole or not at all; in one that has a panorama in layers the new one takes its place.
+    input_path: an RGB-D panorama (.exr), points (.ply), a panorama set or a list of RGB-D shots (.json), a
+    scene (.blend), or a folder of layers. A new folder is there whole or not at all; in one that has a
+    panorama in layers the new one takes its place.
     """
     options, progress = options or LayersOptions(), progress or Progress()
     path, output = Path(input_path), Path(output)
-    kind = FOLDER if path.is_dir() else path.suffix.lower()
+    kind = _kind(path)
     if kind not in MAKERS:
         raise ValueError(f"{path}: must be {INPUT}")
     _refuse_options(path, kind, options)
@@ -127,6 +143,13 @@ def make_layers(input_path, output, options=None, progress=None):
     with progress.step("writing"):
         write_folder(panorama, output, levels=options.levels, ldr=options.ldr)
     return _result(panorama, order, progress)
+
+
+def _kind(path):
+    if path.is_dir():
+        return FOLDER
+    suffix = path.suffix.lower()
+    return SHOTS if suffix == ".json" and path.is_file() and is_shots_file(path) else suffix
 
 
 def _refuse_options(path, kind, options):

@@ -50,11 +50,18 @@ def scanned_room(eyes, count, seed=1):
     points, colours = [], []
     for eye in map(np.array, eyes):
         rays = rng.normal(size=(count, 3))
-        wall = np.min((np.where(rays > 0, HIGH, LOW) - eye) / rays, axis=1)
-        one, other = (OBJECT_LOW - eye) / rays, (OBJECT_HIGH - eye) / rays
-        enter, leave = np.minimum(one, other).max(axis=1), np.maximum(one, other).min(axis=1)
-        hit = (enter < leave) & (enter > 0)
-        met = eye + rays * np.where(hit, enter, wall)[:, None]
-        points.append(met)
-        colours.append(np.where(hit[:, None], _object_colour(met), _wall_colour(met)))
+        distance, seen = shot_of_room(eye, rays)
+        points.append(eye + rays * distance[:, None])
+        colours.append(seen)
     return np.concatenate(points), np.concatenate(colours)
+
+
+def shot_of_room(eye, rays):
+    """Distances (...) in units of rays (..., 3), and colours (..., 3), of what is seen from an eye (3,)."""
+    wall = np.min((np.where(rays > 0, HIGH, LOW) - eye) / rays, axis=-1)
+    one, other = (OBJECT_LOW - eye) / rays, (OBJECT_HIGH - eye) / rays
+    enter, leave = np.minimum(one, other).max(axis=-1), np.maximum(one, other).min(axis=-1)
+    hit = (enter < leave) & (enter > 0)
+    distance = np.where(hit, enter, wall)
+    met = eye + rays * distance[..., None]
+    return distance, np.where(hit[..., None], _object_colour(met), _wall_colour(met))

@@ -114,6 +114,18 @@ def test_points_become_layers(tmp_path, panorama):
     assert np.nanmedian(front.depth) == pytest.approx(CARD, rel=0.01)
 
 
+def test_rgbd_shots_become_layers(rgbd_file, tmp_path, panorama):
+    shots = [{"image": "map.exr", "origin": place} for place in ([1, 2, 3], [1, 2, 3.2])]
+    (tmp_path / "shots.json").write_text(json.dumps({"version": 1, "shots": shots}))
+    command = ["layers", tmp_path / "shots.json", "-o", tmp_path / "layers", "--width", WIDTH, "--json"]
+    status, out, _ = panorama(*command)
+    result = json.loads(out)
+    assert (status, result["origin"]) == (0, [1, 2, 3])
+    assert result["layers"][0]["size"] == [WIDTH, WIDTH // 2]
+    status, _, err = panorama(*command, "--samples", 3)
+    assert (status, "--samples: does nothing for" in err[-1]) == (2, True)
+
+
 def test_a_second_run_replaces_the_first_and_levels_and_ldr_are_written(rgbd_file, tmp_path, panorama):
     folder = tmp_path / "layers"
     for radius in (0.2, 0.5):
