@@ -15,6 +15,7 @@ from .from_points import layers_from_points
 from .shots import Shot
 
 _FAR_TIMES = 1e4  # the farthest surface: there stands what is at infinity, while it is points
+_BEYOND = 2.0  # times the farthest surface there is none: that is infinity, mixed with what is before it
 
 
 def layers_from_shots(
@@ -24,17 +25,18 @@ def layers_from_shots(
 
     Raises: ValueError as that does.
     """
-    finite = [shot.distances[np.isfinite(shot.distances)] for shot in shots]
-    farthest = max((float(distances.max()) for distances in finite if distances.size), default=1.0)
+    place = np.asarray(shots[0].origin if origin is None else origin, dtype=np.float64)
+    farthest = max(_farthest(shot) + float(np.linalg.norm(shot.origin - place)) for shot in shots) or 1.0
     far = _FAR_TIMES * farthest
-    points = [
-        shot.origin + shot.rays * np.minimum(shot.distances, far)[:, None].astype(np.float64)
-        for shot in shots
-    ]
+    points = [shot.origin + shot.rays * np.minimum(shot.distances, far)[:, None] for shot in shots]
     colours = np.concatenate([shot.colours for shot in shots])
-    place = shots[0].origin if origin is None else origin
     found = layers_from_points(np.concatenate(points), colours, place, width, radius, count=count)
-    return replace(found, layers=tuple(_at_infinity(layer, far / 2) for layer in found.layers))
+    return replace(found, layers=tuple(_at_infinity(layer, _BEYOND * farthest) for layer in found.layers))
+
+
+def _farthest(shot):
+    """How far the farthest surface is [m], 0 if there is none."""
+    return float(shot.distances[np.isfinite(shot.distances)].max(initial=0))
 
 
 def _at_infinity(layer, far):
