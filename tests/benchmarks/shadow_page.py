@@ -9,6 +9,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -19,17 +20,15 @@ from shadow_scenes import Ball, Box
 from web_pages import CHROMIUM, measured, outward, photographed, sky, still_life, white
 
 from expanded_panoramas.cycles_integration.shipped import shipped_panorama
-from expanded_panoramas.ibl_toolkit.equirectangular import pixel_directions, row_solid_angles
 from expanded_panoramas.ibl_toolkit.images import exposure_for, read_panorama
 from expanded_panoramas.ibl_toolkit.layers.views.pinhole import Pinhole
-from expanded_panoramas.ibl_toolkit.light.extraction import extract_lights
+from expanded_panoramas.ibl_toolkit.mobile.device_lights import device_lights
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import (
     METHODS,
     STORAGES,
-    LightCamera,
     suggested_settings,
 )
-from expanded_panoramas.ibl_toolkit.mobile.shadow_scene import SceneLight, SceneMesh, ShadowScene
+from expanded_panoramas.ibl_toolkit.mobile.shadow_scene import SceneMesh, ShadowScene
 from expanded_panoramas.ibl_toolkit.mobile.web_page import Background, write_page
 
 DOCS = pathlib.Path(__file__).resolve().parents[2] / "docs"
@@ -99,12 +98,10 @@ def summary(page):
 def car_park(folder):
     """Picture of new things in a car park under its own sun; size of the page [KiB]."""
     photograph = read_panorama(shipped_panorama("city.exr"))
-    found = extract_lights(photograph, count=1)
     meshes = list(new_things())
-    points = np.concatenate([mesh.points for mesh in meshes])
-    sun = LightCamera.of_sun(found.samples.directions[0], points)
-    lights = [SceneLight(sun, tuple(found.samples.irradiance[0]))]
-    scene = ShadowScene(meshes, lights, tuple(irradiance_above(found.residual)))
+    points = np.concatenate([mesh.points for mesh in meshes if mesh.throws])
+    found = device_lights(photograph, points)
+    sun = found.lights[0].camera
     eye = np.array([0.0, 0.0, EYE_HEIGHT])
     behind = Background(photograph, "panorama", exposure_for(photograph), eye)
     kinds = [
@@ -112,6 +109,8 @@ def car_park(folder):
         for method in reversed(METHODS)
         for resolution, storage in ((1024, "16+16"), (1024, "8+8"), (512, "16+16"))
     ]
+    lights = [replace(one, camera=one.camera.with_border(kinds[0])) for one in found.lights]
+    scene = ShadowScene(meshes, lights, found.ambient, found.ambient_down)
     page, view = folder / "car_park.html", Pinhole.looking_at(eye, (0.1, 3.2, 0.75), 62, *PICTURE)
     write_page(page, scene, kinds, behind, view, "New things in a car park")
     shown = cv2.cvtColor(photographed([page], folder, PICTURE)[0], cv2.COLOR_RGB2BGR)
@@ -122,20 +121,13 @@ def car_park(folder):
 def new_things():
     """A ball and a box on the ground."""
     floor = np.array([[-3.0, 1, 0], [3, 1, 0], [3, 6, 0], [-3, 6, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
-    yield SceneMesh("ground", *floor)
+    yield SceneMesh("ground", *floor, throws=False)
     ball = Ball((0.75, 3.0, 0.4), 0.4, 48)
     points, triangles = ball.mesh()
     normals = (points - ball.centre) / ball.radius
     yield SceneMesh("ball", points, triangles, "synthetic", (0.65, 0.2, 0.1), normals)
     box = outward(*Box((-0.5, 2.9, 0), (0.0, 3.4, 1.0)).mesh())
     yield SceneMesh("box", *box, "synthetic", (0.35, 0.4, 0.45))
-
-
-def irradiance_above(image):
-    """Of the ground by an upright panorama (H, W, 3): (3,)."""
-    height, width = image.shape[:2]
-    cosine = np.maximum(pixel_directions(width, height)[..., 2], 0)
-    return (image * (cosine * row_solid_angles(width, height)[:, None])[..., None]).sum(axis=(0, 1))
 
 
 if __name__ == "__main__":
