@@ -16,6 +16,7 @@ MOST_ALBEDO = 0.9
 MOST_GLOSS = 0.5
 """At most this share of any colour of the photograph is taken for a reflection: were it all, an object that
 blocks a window's blue reflection would leave the other colours alone, as a red spot."""
+PHOTOGRAPH_MATERIAL = "Panorama Photograph"
 LEAST_IRRADIANCE, LEAST_GLOSS = 1e-4, 1e-6
 
 
@@ -59,6 +60,13 @@ def support_material(place: Place) -> bpy.types.Material:
 def backplate_material(place: Place) -> bpy.types.Material:
     """Show the photograph, projected on the rebuilt surfaces, to the camera."""
     material = _emptied(place, "Panorama Backplate")
+    _surface(material, _emission(material.node_tree, lookup.lookup(place, material.node_tree, PHOTOGRAPH)))
+    return material
+
+
+def photograph_material(place: Place) -> bpy.types.Material:
+    """Show the photograph alike, where no backplate is rendered: what a preview of a device darkens."""
+    material = _emptied(place, PHOTOGRAPH_MATERIAL)
     _surface(material, _emission(material.node_tree, lookup.lookup(place, material.node_tree, PHOTOGRAPH)))
     return material
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import bpy
 
+from ..cycles_integration.pieces import built_pieces
+from ..cycles_integration.place import place_in
 from ..cycles_integration.roles import is_editable
 from ..cycles_integration.shadow_preview import (
     COMPOSITOR,
@@ -17,6 +19,7 @@ from ..cycles_integration.shadow_preview import (
     put_on_picture,
     renew,
     settings_of,
+    show_photograph,
 )
 from . import shadow_watch
 from .reporting import Reporting, possible
@@ -27,7 +30,8 @@ NEW_MATERIAL = "Shadow Receiver"
 
 class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
     """Show on the selected objects the shadows of the lights as a small device draws them: makes the shadow
-    maps and puts a node group before the output of their materials, in EEVEE and Cycles"""
+    maps and puts a node group before the output of their materials, in EEVEE and Cycles. Rebuilt surfaces
+    without a material show the photograph meanwhile"""
 
     bl_idname = "panorama.preview_shadows"
     bl_label = "Preview Shadows"
@@ -42,12 +46,13 @@ class PANORAMA_OT_preview_shadows(Reporting, bpy.types.Operator):
         preview = context.scene.panorama_shadow_preview
         materials, bare, left = _sorted_out(_receivers(context))
         warnings = _make(context, SHADER)
-        for material in materials + _clothed(bare):
+        worn = materials + _clothed(bare, context.scene)
+        for material in worn:
             put_on(material, preview.group, preview.darkness)
         shadow_watch.looks_changed(preview, context)
         for warning in (*left, *warnings):
             self.report({"WARNING"}, warning[0].upper() + warning[1:])
-        count = len(materials) + bool(bare)
+        count = len(worn)
         return f"{_shadows(preview)} on {count} material{'s' * (count > 1)}; {size_of(preview)}"
 
 
@@ -196,19 +201,25 @@ def _sorted_out(things):
     return usable, bare, left
 
 
-def _clothed(bare):
-    """A new material in a list, put on things without any; none for none."""
-    if not bare:
-        return []
+def _clothed(bare, scene):
+    """Materials in a list, put on things without any: on rebuilt surfaces the photograph; none for none."""
+    place = place_in(scene)
+    pieces = [thing for thing in bare if place is not None and thing in built_pieces(place)]
+    others = [thing for thing in bare if thing not in pieces]
+    made = [show_photograph(place, pieces)] if pieces else []
+    return [*made, _plain(others)] if others else made
+
+
+def _plain(things):
     material = bpy.data.materials.new(NEW_MATERIAL)
     if bpy.app.version < (5,):
         material.use_nodes = True
-    for thing in bare:
+    for thing in things:
         if thing.material_slots:
             thing.material_slots[0].material = material
         elif not thing.data.materials:  # things may share their data
             thing.data.materials.append(material)
-    return [material]
+    return material
 
 
 classes = (

@@ -17,6 +17,7 @@ from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_maps_of
 from .map_image import store_map
 from .own_shadow import MOST_LIGHTS, is_gone, is_there, lights_of, settle_shadows
+from .real_surfaces import show_photograph
 from .receivers import has_surface, nodes_of, put_on, take_off
 from .strength import strength_of, strongest_first
 from .upkeep import discard, renew, settings_of
@@ -46,6 +47,7 @@ __all__ = [
     "settings_of",
     "settle_shadows",
     "shadow_maps_of",
+    "show_photograph",
     "store_map",
     "strength_of",
     "strongest_first",

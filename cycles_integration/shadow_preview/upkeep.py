@@ -6,12 +6,14 @@ import bpy
 
 from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings
 from ...ibl_toolkit.mobile.shadow_maps.suggestion import exponent, offsets, reduction
+from ..place import place_in
 from .composite import take_off_picture
 from .group import ShownLight, aim_group, build_group, fits, images_of, refuse_wide
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_maps_of
 from .map_image import store_map
 from .own_shadow import is_gone, lights_of, settle_shadows
+from .real_surfaces import undress
 from .receivers import take_off
 from .strength import strength_of
 
@@ -77,6 +79,9 @@ def discard(preview):
         setattr(preview, property_name, None)
         if group is not None:
             _remove(group, preview.id_data)
+    place = place_in(preview.id_data)
+    if place is not None:
+        undress(place)
     settle_shadows(preview)
 
 
