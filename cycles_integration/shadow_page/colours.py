@@ -11,16 +11,22 @@ from ..shadow_preview.receivers import NODE
 
 _COLOUR_OF = {"BSDF_PRINCIPLED": "Base Color", "BSDF_DIFFUSE": "Color"}
 """Shaders with a base colour, and the input that it is."""
+_NOT_MATT = ("Metallic", "Transmission Weight")
+"""Inputs of Principled beyond half of which a surface is anything but matt."""
 
 
 def base_colour(material: bpy.types.Material) -> tuple[tuple[float, float, float], str]:
     """The base colour of a material, linear, 0 to 1, and a warning, "" for none.
 
     A constant is taken as it is, of an image the mean. For anything else it is the colour that the viewport's
-    solid mode has, with a warning.
+    solid mode has, with a warning; so is what mirrors or lets light through told of.
     """
-    colour = _colour(material)
-    why = ""
+    if material.node_tree is None or (bpy.app.version < (5,) and not material.use_nodes):
+        return tuple(np.clip(np.array(material.diffuse_color[:3], dtype=float), 0, 1).tolist()), ""
+    shader, why = _shader(material.node_tree), ""
+    colour = None if shader is None else _colour(shader)
+    if shader is not None and any(_is_above_half(shader.inputs.get(name)) for name in _NOT_MATT):
+        why = f"material '{material.name}' is metal or glass, and is drawn as a matt surface"
     if colour is None:
         colour = material.diffuse_color[:3]
         why = (
@@ -30,13 +36,17 @@ def base_colour(material: bpy.types.Material) -> tuple[tuple[float, float, float
     return tuple(np.clip(np.asarray(colour, dtype=float), 0, 1).tolist()), why
 
 
-def _colour(material):
-    if material.node_tree is None or (bpy.app.version < (5,) and not material.use_nodes):
-        return material.diffuse_color[:3]
-    shader = _source(_surface(material.node_tree))
+def _shader(tree):
+    """The node that the surface comes from, or None."""
+    output = tree.get_output_node("ALL") or tree.get_output_node("CYCLES")
+    shader = _source(output.inputs["Surface"] if output else None)
     while shader is not None and shader.type == "GROUP" and shader.name.startswith(NODE):  # our own preview
         shader = _source(shader.inputs["Surface"])
-    if shader is None or shader.type not in _COLOUR_OF:
+    return shader
+
+
+def _colour(shader):
+    if shader.type not in _COLOUR_OF:
         return None
     socket = shader.inputs[_COLOUR_OF[shader.type]]
     node = _source(socket)
@@ -47,10 +57,8 @@ def _colour(material):
     return _mean(node.image) if node.type == "TEX_IMAGE" and node.image else None
 
 
-def _surface(tree):
-    """The input of the output that renders use, or None."""
-    output = tree.get_output_node("ALL") or tree.get_output_node("CYCLES")
-    return output.inputs["Surface"] if output else None
+def _is_above_half(socket):
+    return socket is not None and not socket.is_linked and socket.default_value > 0.5
 
 
 def _source(socket):

@@ -120,6 +120,14 @@ def test_several_materials_images_and_what_has_no_colour(scene):
     assert colours[f"ball, {glow.name}"] == pytest.approx((0.1, 0.2, 0.3))
     assert len(found.warnings) == 1
     assert "base colour is neither a constant nor an image" in found.warnings[0]
+    metal = bpy.data.materials.new("metal")
+    if bpy.app.version < (5,):
+        metal.use_nodes = True
+    metal.node_tree.nodes["Principled BSDF"].inputs["Metallic"].default_value = 1
+    ball.data.materials[2] = metal
+    assert found_in(scene).warnings == ("material 'metal' is metal or glass, and is drawn as a matt surface",)
+    metal.node_tree.nodes.clear()
+    assert "neither a constant nor an image" in found_in(scene).warnings[0]
 
 
 @pytest.mark.parametrize(("kind", "energy"), [("SUN", 2), ("POINT", 100), ("SPOT", 100), ("AREA", 60)])

@@ -7,6 +7,9 @@ import bpy
 import pytest
 import shadow_pictures
 
+from expanded_panoramas.cycles_integration.shadow_page import page_scene
+from expanded_panoramas.operators.shadow_page import kinds_of
+
 NAME = "export_shadow_page"
 
 
@@ -54,8 +57,11 @@ def test_a_preview_that_stands_for_a_light_leaves_it_its_shadow_on_the_page(scen
     bpy.data.objects["plane"].select_set(True)
     bpy.ops.panorama.preview_shadows()
     assert not bpy.data.lights["SUN"].use_shadow
-    bpy.ops.panorama.export_shadow_page(filepath=str(tmp_path / "a.glb"), file_format=".glb")
-    assert len(extras(tmp_path / "a.glb")["lights"]) == 1
+    kinds = kinds_of(scene.panorama_shadow_preview, False)
+    found = page_scene(scene, bpy.context.evaluated_depsgraph_get(), kinds)
+    assert found.light_names == ("SUN",)
+    assert {mesh.albedo for mesh in found.scene.meshes[1:]} == {(1, 1, 1)}  # through the preview's group
+    assert not any("base colour" in text for text in found.warnings)
     bpy.ops.panorama.remove_shadow_preview()
     bpy.data.lights["SUN"].use_shadow = False
     with pytest.raises(RuntimeError, match="no light shines on what throws shadows"):
