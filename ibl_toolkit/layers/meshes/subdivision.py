@@ -24,24 +24,18 @@ class Subdivision:
     split into pixels or not at all, and differently at each resolution. V_R grows with the square of the
     angle between pixels, so its *sum* over a cell of n x n pixels is about 1 - cos(n times that angle): that
     is what is compared with 1 - cos(turn_deg).
-    mean_variation: the threshold of Alg. 16 on the mean of V_R, used in place of turn_deg if given.
-    largest_cell: [px] sides of cells at most; a sixteenth of an equirectangular map's width or a quarter of a
-    cube's face (22.5 degrees) if None. Triangles that are too large distort textures, see 7.4.3.
+
+    Cells are also split to a sixteenth of an equirectangular map's width, or a quarter of a cube's face (22.5
+    degrees): triangles that are too large distort textures, see 7.4.3.
     """
 
     feature_deg: float = 10.0
     turn_deg: float = 10.0
-    mean_variation: float | None = None
-    largest_cell: int | None = None
 
     def __post_init__(self):
         for name in ("feature_deg", "turn_deg"):
             if not 0 < getattr(self, name) <= 180:
                 raise ValueError(f"{name} is {getattr(self, name)}, must be above 0 and at most 180 degrees")
-        if self.mean_variation is not None and not self.mean_variation > 0:
-            raise ValueError(f"mean_variation is {self.mean_variation}, must be above 0")
-        if self.largest_cell is not None and self.largest_cell < 1:
-            raise ValueError(f"largest_cell is {self.largest_cell} px, must be at least 1")
 
 
 def layer_quadtree(corners, depth, inside, subdivision):
@@ -54,17 +48,11 @@ def layer_quadtree(corners, depth, inside, subdivision):
     domain_table = summed_area_table(inside)
     whole = summed_area_table(features | border(corners, inside))
     residual_table = summed_area_table(residual)
-    largest = subdivision.largest_cell or max(1, inside.shape[2] // (16 if corners.wraps else 4))
-    if corners.wraps:
-        largest = min(largest, corners.width // 4)  # or a cell would reach round the sphere
+    largest = max(1, inside.shape[2] // (16 if corners.wraps else 4))
 
     def must_split(cells):
         rectangles = (cells.x0, cells.y0, cells.x1, cells.y1, cells.sheet)
-        bends = rectangle_sums(residual_table, *rectangles)
-        if subdivision.mean_variation is None:
-            bends = bends >= 1 - np.cos(np.radians(subdivision.turn_deg))
-        else:
-            bends = bends >= subdivision.mean_variation * cells.area
+        bends = rectangle_sums(residual_table, *rectangles) >= 1 - np.cos(np.radians(subdivision.turn_deg))
         large = np.maximum(cells.x1 - cells.x0, cells.y1 - cells.y0) > largest
         split = (rectangle_sums(whole, *rectangles) > 0) | bends | large
         return split & (rectangle_sums(domain_table, *rectangles) > 0)

@@ -13,17 +13,15 @@ _SPACING = 1.0  # px: no pixel of a surface is without a sample of it
 _TIDIED = 1 << 21  # so many samples more, and those that turned out to be hidden are left out
 
 
-def adaptive_view(panorama: LayeredPanorama, camera: Pinhole, *, filter_radius: float = 0.75) -> RenderedView:
+def adaptive_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
     """See a panorama through a camera in the world, by samples adapted to the 8-neighbourhood.
-
-    filter_radius: [px], 0.5 to 1; the thesis has 0.75.
 
     Source: thesis, 7.3.2, Alg. 10, whose m_h x m_v are those of `counts_needed`. Of samples of the nearest
     sample's layer in a pixel those on another surface behind it are left out, too.
 
-    Raises: ValueError for a layer without radiance and for a radius outside of 0.5 to 1 px.
+    Raises: ValueError for a layer without radiance.
     """
-    return view_in_bands(panorama, camera, filter_radius, _visible_samples)
+    return view_in_bands(panorama, camera, _visible_samples)
 
 
 def _visible_samples(canvas, layers, sky):

@@ -19,7 +19,7 @@ BLOCK = 3
 """Side of the blocks of section 7.3.1 [px]; a canvas has whole ones, and its rim is two of them."""
 _RIM = 2 * BLOCK
 _PIXELS = 1 << 21  # of a band at most, but for wide pictures: it bounds the memory
-_RADII = (0.5, 1.0)
+_FILTER = 0.75  # [px], the radius printed for Fig. 7-7; the thesis allows 0.5 to 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,10 +60,10 @@ class Canvas:
         xy = np.stack([i + 0.5, j + self.first + 0.5]).astype(np.float32)
         return Samples(xy, np.zeros(len(j), np.float32), colours, np.zeros(len(j), np.int64))
 
-    def filtered(self, visible: Samples, radius: float) -> RenderedView:
+    def filtered(self, visible: Samples) -> RenderedView:
         """The view of the rows, without the rim, that visible samples make."""
         rows, columns = self.shape
-        radiance, near = filtered(visible, radius, columns, rows)
+        radiance, near = filtered(visible, _FILTER, columns, rows)
         inner = np.s_[_RIM : _RIM + self.end - self.first, _RIM : _RIM + self.camera.width]
         rays = self.camera.directions()[self.first : self.end] @ self.camera.axes[2]
         with np.errstate(divide="ignore"):
@@ -73,17 +73,14 @@ class Canvas:
 def view_in_bands(
     panorama: LayeredPanorama,
     camera: Pinhole,
-    radius: float,
     visible_samples: Callable[[Canvas, list[tuple[Layer, Tiles]], Samples], Samples],
 ) -> RenderedView:
     """A view that is made band by band, each filtered from what `visible_samples` finds.
 
     That is called with a canvas, the layers with their tiles, and the samples at infinity.
 
-    Raises: ValueError for a layer without radiance, and a filter radius [px] outside 0.5 to 1.
+    Raises: ValueError for a layer without radiance.
     """
-    if not _RADII[0] <= radius <= _RADII[1]:
-        raise ValueError(f"filter radius {radius} px must lie between {_RADII[0]} and {_RADII[1]} px")
     for layer in panorama.layers:
         if layer.radiance is None:
             raise ValueError(f"{layer} has no radiance: there is nothing to be seen of it")
@@ -93,7 +90,7 @@ def view_in_bands(
     bands = []
     for first in range(0, camera.height, height):
         canvas = Canvas(camera.in_panorama(panorama), first, min(first + height, camera.height))
-        bands.append(canvas.filtered(visible_samples(canvas, layers, canvas.sky(far)), radius))
+        bands.append(canvas.filtered(visible_samples(canvas, layers, canvas.sky(far))))
     return RenderedView(
         np.concatenate([band.radiance for band in bands]), np.concatenate([band.depth for band in bands])
     )

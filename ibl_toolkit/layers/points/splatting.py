@@ -18,18 +18,16 @@ _SPACING = 1.0  # px: where a layer's pixels lie further apart, there are severa
 _FINER_SPACING = 0.5  # px, in blocks that are refined
 
 
-def splat_view(panorama: LayeredPanorama, camera: Pinhole, *, filter_radius: float = 0.75) -> RenderedView:
+def splat_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
     """See a panorama through a camera in the world, by direct sampling with refinement at discontinuities.
-
-    filter_radius: [px], 0.5 to 1.
 
     Source: thesis, 7.3.1, and 7.3.1.1, Alg. 9. It wants layers no coarser than the picture: pixels that lie
     further apart in it have several samples here, as in Alg. 10. What it asks of layers is asked of surfaces
     here: one layer may have several, one behind the other.
 
-    Raises: ValueError for a layer without radiance and for a radius outside of 0.5 to 1 px.
+    Raises: ValueError for a layer without radiance.
     """
-    return view_in_bands(panorama, camera, filter_radius, _visible_samples)
+    return view_in_bands(panorama, camera, _visible_samples)
 
 
 def _visible_samples(canvas, layers, sky):

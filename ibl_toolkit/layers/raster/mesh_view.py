@@ -13,7 +13,6 @@ from dataclasses import replace
 import numpy as np
 
 from ..meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh, uniform_triangles
-from ..meshes.subdivision import Subdivision
 from ..panorama import LayeredPanorama
 from ..views.pinhole import Pinhole
 from ..views.rendered_view import RenderedView, far_view
@@ -58,11 +57,9 @@ def grid_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
     return replace(view, triangles=sum(uniform_triangles(layer) for layer in panorama.layers))
 
 
-def quadtree_view(
-    panorama: LayeredPanorama, camera: Pinhole, *, subdivision: Subdivision | None = None
-) -> RenderedView:
+def quadtree_view(panorama: LayeredPanorama, camera: Pinhole) -> RenderedView:
     """What a camera sees of meshes by quadtrees (7.4.2). Raises as `mesh_view`."""
-    meshes = (quadtree_mesh(layer, quadtree_of(layer, subdivision)) for layer in panorama.layers)
+    meshes = (quadtree_mesh(layer, quadtree_of(layer)) for layer in panorama.layers)
     return mesh_view(panorama, camera, meshes, cut=False)
 
 

@@ -18,9 +18,11 @@ from box_layers import (
     rim_of_pixels,
 )
 
+from expanded_panoramas.ibl_toolkit.layers.meshes.corners import Corners
 from expanded_panoramas.ibl_toolkit.layers.meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
+from expanded_panoramas.ibl_toolkit.layers.meshes.normals import normal_variation, normals_from_depth
 from expanded_panoramas.ibl_toolkit.layers.meshes.quadtree import build_quadtree
-from expanded_panoramas.ibl_toolkit.layers.meshes.subdivision import Subdivision
+from expanded_panoramas.ibl_toolkit.layers.meshes.subdivision import Subdivision, features_and_residual
 
 SIZES = [("equirectangular", w) for w in (4, 6, 10, 64, 74, 128)] + [
     ("cube map", w) for w in (3, 6, 9, 15, 48, 111, 192)
@@ -201,19 +203,20 @@ def test_a_map_too_small_for_triangles_is_refused():
 
 
 def test_the_mean_of_alg_16_cannot_tell_how_large_a_cell_is():
-    """The inside of a ball bends alike everywhere: split into all its pixels, or not at all."""
-    layer = layer_of("cube map", np.full((128, 192), 2.0, np.float32))
-    for mean_variation, triangles in ((1e-5, 2 * 128 * 192), (3e-3, 2 * 6 * 4 * 4)):
-        mesh = adaptive_mesh(layer, Subdivision(mean_variation=mean_variation))
-        assert len(mesh.triangles) == triangles
+    """The inside of a ball bends alike everywhere: means of cells are alike, their sums are not."""
+    corners, inside = Corners("cube map", 192, 128), np.ones((6, 64, 64), bool)
+    normals = normals_from_depth(corners, np.full(inside.shape, 2, np.float32), inside)
+    _, residual = features_and_residual(normal_variation(corners, normals, inside), 10)
+    cells = [residual[0, 32 : 32 + n, 32 : 32 + n] for n in (4, 8, 16)]
+    means, sums = ([fold(cell) for cell in cells] for fold in (np.mean, np.sum))
+    assert max(means) < 1.3 * min(means)
+    assert max(sums) > 10 * min(sums)
 
 
-def test_cells_are_no_larger_than_asked():
-    layer = box_layer("cube map", 96)
-    leaves = quadtree_of(layer, Subdivision(largest_cell=2)).leaves()
-    assert (leaves.x1 - leaves.x0).max() == 2
-    leaves = quadtree_of(layer, Subdivision(largest_cell=100)).leaves()
-    assert (leaves.x1 - leaves.x0).max() > 2
+def test_cells_are_no_larger_than_22_5_degrees():
+    for mapping, width, most in (("cube map", 96, 8), ("equirectangular", 128, 8)):
+        leaves = quadtree_of(box_layer(mapping, width)).leaves()
+        assert (leaves.x1 - leaves.x0).max() == most
 
 
 @pytest.mark.parametrize("mapping", BOTH)

@@ -95,8 +95,6 @@ def test_the_border_is_inside_the_domain():
     [
         ({"feature_deg": 0}, "feature_deg is 0, must be above 0 and at most 180 degrees"),
         ({"turn_deg": 200}, "turn_deg is 200, must be above 0"),
-        ({"mean_variation": 0.0}, "mean_variation is 0.0, must be above 0"),
-        ({"largest_cell": 0}, "largest_cell is 0 px, must be at least 1"),
     ],
 )
 def test_impossible_settings_are_refused(changes, message):
