@@ -243,10 +243,16 @@ def test_a_places_lamp_is_where_the_room_has_it(fresh_blend, tmp_path, turn):
     np.testing.assert_allclose(found.background.origin, origin, atol=1e-6)
     np.testing.assert_allclose(found.background.world_from_panorama, TURNS[turn], atol=1e-5)
     np.testing.assert_allclose(found.camera.eye, origin, atol=1e-6)
+
+
+def test_own_lights_come_before_the_panoramas(fresh_blend, tmp_path):
+    box_room(fresh_blend, tmp_path, lamp_map())
+    scene = fresh_blend.context.scene
+    small.add_ball(scene, small.material(small.DIFFUSE), 0.2, (0.5, 0.2, 0.3))
     add_light("SUN", 100)
     scene.view_settings.exposure, scene.panorama_view.exposure = 1, 2
-    assert found_in(scene).light_names == ("SUN",)
-    assert found_in(scene).background.exposure == 8
+    own = found_in(scene)
+    assert (own.light_names, own.background.exposure) == (("SUN",), 8)
     both = found_in(scene, light_from="both")
     assert set(both.light_names) == {"panorama 1", "SUN"}
     assert found_in(scene, light_from="panorama").light_names == ("panorama 1",)
