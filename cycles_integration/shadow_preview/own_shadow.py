@@ -36,13 +36,13 @@ def settle_shadows(preview):
         replaced = []
     _give_back(preview, replaced)
     held = [row.light for row in preview.switched_off]
-    for data in replaced:
-        if data.library is not None or (data in held and not data.use_shadow):
+    for data in dict.fromkeys(replaced):
+        if data.library is not None or not (data.use_shadow or _is_off_for_others(data, preview)):
             continue
-        if data not in held and (data.use_shadow or _is_off_for_others(data, preview)):
+        if data not in held:
             preview.switched_off.add().light = data
-            held.append(data)
-        data.use_shadow = data.use_shadow and data not in held
+        if data.use_shadow:
+            data.use_shadow = False
 
 
 def _give_back(preview, replaced):

@@ -190,6 +190,17 @@ def test_lights_that_share_their_data_share_its_shadow(scene):
     assert casting("SUN") == [True]
 
 
+def test_a_light_without_shadow_is_not_touched(scene):
+    """Neither switched on later, nor set again and again, which would have maps made for ever."""
+    bpy.data.objects["SUN"].data.use_shadow = False
+    bpy.ops.panorama.preview_shadows()
+    follow()
+    bpy.context.view_layer.update()
+    assert not shadow_watch.is_waiting()
+    bpy.ops.panorama.remove_shadow_preview()
+    assert casting("SUN", "POINT") == [False, True]
+
+
 def test_undo_and_the_file_have_every_light(scene, tmp_path):
     select("plane", "SUN")
     bpy.ops.ed.undo_push()
