@@ -81,7 +81,7 @@ class GrowingMesh:
             directions = self.pixels.directions(pixels)
             triangles = self.sphere.locate(directions, lattice.triangles[block], self.normals)
             lattice.triangles[block] = triangles
-            errors = self._errors(pixels, directions, self.planes[triangles])
+            errors = self._errors(pixels, directions, self.planes.take(triangles, axis=0))
             lattice.errors[block] = np.where(self._is_vertex[pixels], 0, errors)
 
     def _errors(self, pixels, directions, planes):

@@ -23,13 +23,14 @@ class MapPixels:
 
     def directions(self, pixels: np.ndarray) -> np.ndarray:
         """Unit vectors (n, 3), float64, panorama frame, of the centres of pixels (n,)."""
-        row, column = np.divmod(pixels, self.width)
+        row = pixels // self.width
+        column = pixels - row * self.width  # half the time of divmod
         if self._is_cube:
             uv = np.stack([(column + 0.5) / self.width, (row + 0.5) / self.height], axis=1)
             return cube_map.direction_from_uv(uv)
         directions = np.empty((len(pixels), 3))
-        across, up = self._columns[column], self._rows[row]
-        directions[:, :2] = across * up[:, :1]
+        across, up = self._columns.take(column, axis=0), self._rows.take(row, axis=0)
+        np.multiply(across, up[:, :1], out=directions[:, :2])
         directions[:, 2] = up[:, 1]
         return directions
 
@@ -41,7 +42,7 @@ class MapPixels:
 
     def near(self, pixels: np.ndarray) -> np.ndarray:
         """Reciprocal depths (n,) [1/m] of pixels (n,) of the domain."""
-        return 1.0 / self._depth.reshape(-1)[pixels].astype(np.float64)
+        return 1.0 / self._depth.reshape(-1).take(pixels).astype(np.float64)
 
     def lattice(self, step: int) -> tuple[np.ndarray, np.ndarray]:
         """Every ``step``-th row (n,) and column (m,), beginning in the middle of a step."""

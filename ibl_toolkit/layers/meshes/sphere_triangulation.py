@@ -55,14 +55,16 @@ class SphereTriangulation:
         normals: what `normals` gives. The walk ends, since it only goes down to lower planes of the hull.
         """
         triangles = triangles.copy()
-        walking = np.arange(len(points))
-        while len(walking):
-            here = triangles[walking]
-            sides = np.einsum("nij,nj->ni", normals[here], points[walking])
-            corner = sides.argmin(axis=1)
-            outside = sides[np.arange(len(corner)), corner] < -OUTSIDE
-            walking, here, corner = walking[outside], here[outside], corner[outside]
-            triangles[walking] = self.twins[3 * here + (corner + 1) % 3] // 3
+        walking, here = None, triangles  # None: all points; most are where they were, so they aren't copied
+        while walking is None or len(walking):
+            there = points if walking is None else points[walking]
+            sides = np.einsum("nij,nj->ni", normals.take(here, axis=0), there)
+            a, b, c = sides.T
+            outside = np.flatnonzero(np.minimum(np.minimum(a, b), c) < -OUTSIDE)
+            walking = outside if walking is None else walking[outside]
+            corner = sides[outside].argmin(axis=1)
+            here = self.twins[3 * here[outside] + (corner + 1) % 3] // 3
+            triangles[walking] = here
         return triangles
 
     def insertable(self, triangles, points):
