@@ -44,8 +44,11 @@ def normal_variation(corners, normals, inside):
     are alike; here opposite normals differ most, by 2 instead of 0.
     """
     across, down = np.zeros(inside.shape, np.float32), np.zeros(inside.shape, np.float32)
-    across[:, :, 1:] = _difference(normals, inside, np.s_[:, :, 1:], np.s_[:, :, :-1])
-    down[:, 1:] = _difference(normals, inside, np.s_[:, 1:, :], np.s_[:, :-1, :])
+    for start in range(0, inside.shape[1], _ROWS):
+        here, last = slice(start, start + _ROWS), min(start + _ROWS, inside.shape[1] - 1)
+        across[:, here, 1:] = _difference(normals, inside, np.s_[:, here, 1:], np.s_[:, here, :-1])
+        above, below = slice(start, last), slice(start + 1, last + 1)
+        down[:, below] = _difference(normals, inside, np.s_[:, below, :], np.s_[:, above, :])
     variation = np.hypot(across, down, out=across)
     for rim, beyond in corners.rims:
         variation[rim] = np.hypot(variation[rim], _difference(normals, inside, rim, beyond))
