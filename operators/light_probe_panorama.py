@@ -27,6 +27,7 @@ class PANORAMA_OT_panorama_of_ball(OfProbePhoto, bpy.types.Operator):
 
     bl_idname = "panorama.panorama_of_ball"
     bl_label = "Panorama from Mirror Ball"
+    wants_size = True
 
     width: bpy.props.IntProperty(
         name="Width",

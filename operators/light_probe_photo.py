@@ -46,7 +46,12 @@ class Probe:
 
 
 class OfProbePhoto(Reporting, ImportHelper):
-    """An operator on the photograph of a probe ball."""
+    """An operator on the photograph of a probe ball.
+
+    wants_size: whether the ball's diameter counts, even where its outline is looked for.
+    """
+
+    wants_size = False
 
     filter_glob: bpy.props.StringProperty(default=PICTURES, options={"HIDDEN"})
     lens: bpy.props.EnumProperty(
@@ -130,9 +135,10 @@ class OfProbePhoto(Reporting, ImportHelper):
         layout.use_property_split, layout.use_property_decorate = True, False
         groups = [("lens", *LENS_FIELDS[self.lens]), ("has_marker",)]
         if self.has_marker:
-            groups += [("marker_size", "dictionary", "marker_id"), ("ball_diameter", "ball_from")]
-            if self.ball_from == "MARKER":
-                groups.append(("ball_place", "ball_above"))
+            is_placed = self.ball_from == "MARKER"
+            of_place = ("ball_place", "ball_above") if is_placed else ()
+            of_size = ("ball_diameter",) if is_placed or self.wants_size else ()
+            groups += [("marker_size", "dictionary", "marker_id"), ("ball_from", *of_size, *of_place)]
         draw_groups(layout, self, groups)
 
     def read_probe(self, scene) -> Probe:
