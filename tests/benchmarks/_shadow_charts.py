@@ -97,10 +97,10 @@ def _maps(axis, rows):
         ylabel="rms error",
         xscale="log",
         yscale="log",
-        ylim=(0.025, 0.9),
+        ylim=(0.012, 0.9),
     )
     axis.minorticks_off()
-    axis.set_yticks([0.03, 0.05, 0.1, 0.2], ["0.03", "0.05", "0.1", "0.2"])
+    axis.set_yticks([0.02, 0.05, 0.1, 0.2], ["0.02", "0.05", "0.1", "0.2"])
     axis.set_xticks([0.0625, 0.25, 1, 4, 16], ["1/16", "1/4", "1", "4", "16"])
     axis.legend(frameon=False, fontsize=7.5, ncols=3, loc="upper left", handlelength=2.8)
 
