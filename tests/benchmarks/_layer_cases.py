@@ -11,6 +11,7 @@ import numpy as np
 
 from expanded_panoramas.cycles_integration.layer_capture import LayerCapture, capture_surfaces, split_surfaces
 from expanded_panoramas.cycles_integration.layer_scene import frame_of
+from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.layers.files.mip import halved
 from expanded_panoramas.ibl_toolkit.layers.files.storage import read_layers, write_layers
 from expanded_panoramas.ibl_toolkit.layers.making.from_rgbd import layers_from_rgbd
@@ -19,13 +20,11 @@ from expanded_panoramas.sample_scenes.layered_room import capture, scene, sizes,
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TWO, ONE, MADE, SURFACES = "room and objects", "one layer", "made of one RGB-D", "successive surfaces"
-ENLARGED = "room and objects, enlarged"
 KINDS = {
     TWO: "the room, and the objects in it, rendered by themselves",
     ONE: "what the origin sees, as one layer: meshes bridge its jumps",
     MADE: "layers_from_rgbd of that one layer: what was hidden is made up",
     SURFACES: "split_surfaces of capture_surfaces: what is seen from within the radius, rendered",
-    ENLARGED: "the widest of the first kind, interpolated to twice their width: for time and memory",
 }
 TABLE = (*views.TABLE_8_1, views.C1)
 ASIDE = np.array([-1.0, 1.0, 0.0]) / math.sqrt(2)  # from the centre to C1
@@ -38,13 +37,14 @@ COMPARED = tuple(view for view in TABLE if view.name in ("S6", "S10", "S12", "C1
 class Settings:
     """How much is measured.
 
-    widths: of layers [px]; the widest is captured, the others are its mip levels. usual: the width at which
-    all views are looked at; kinds_width: that at which kinds of layers are compared.
+    widths: of layers [px]. usual: the one that is captured, at which all views are looked at; narrower ones
+    are its mip levels, of wider ones as much is captured as C1 needs. kinds_width: that at which kinds of
+    layers are compared.
     """
 
     folder: pathlib.Path
     charts: pathlib.Path
-    widths: tuple[int, ...] = (1024, 2048, 4096)
+    widths: tuple[int, ...] = (1024, 2048, 4096, 8192)
     usual: int = 4096
     kinds_width: int = 1024
     capture_samples: int = 4  # and denoised
@@ -58,7 +58,7 @@ class Settings:
 FULL = Settings(ROOT / "out" / "bench" / "layers", ROOT / "docs" / "charts")
 TOY = Settings(
     *[ROOT / "out" / "bench" / "layers_toy"] * 2,
-    widths=(256, 512),
+    widths=(256, 512, 1024),
     usual=512,
     kinds_width=256,
     capture_samples=4,
@@ -80,10 +80,10 @@ def panorama(settings: Settings, kind: str, width: int) -> LayeredPanorama:
     """The room in layers of a kind, so many pixels wide."""
     if kind == SURFACES:
         return _captured(settings, kind, width, _successive)
-    widest = _captured(settings, TWO, settings.widths[-1], _room_and_objects)
-    if kind == ENLARGED:
-        return replace(widest, layers=tuple(map(_doubled, widest.layers)))
-    found = replace(widest, layers=tuple(_narrower(layer, width) for layer in widest.layers))
+    if width > settings.usual:
+        return _captured(settings, kind, width, _finer)
+    found = _captured(settings, TWO, settings.usual, _room_and_objects)
+    found = replace(found, layers=tuple(_narrower(layer, width) for layer in found.layers))
     if kind == TWO:
         return found
     seen = _nearest(found)
@@ -114,8 +114,38 @@ def _room_and_objects(settings, width):
     return capture.capture_layers(scene.new_room(), width, settings.capture_samples)
 
 
+def _finer(settings, width):
+    """All the depth, and the light of what C1 shows; elsewhere that of half the width, interpolated."""
+    room = scene.new_room()
+    whole = capture.capture_layers(room, width, None)
+    left, top, right, bottom = window_of_c1(settings)
+    render = room.render
+    render.use_border = True
+    render.border_min_x, render.border_max_x = left, right
+    render.border_min_y, render.border_max_y = 1 - bottom, 1 - top  # Blender counts from the bottom
+    part = capture.capture_layers(room, width, settings.capture_samples)
+    within = np.s_[int(top * width / 2) : int(bottom * width / 2), int(left * width) : int(right * width)]
+    narrow = panorama(settings, TWO, width // 2)
+    layers = []
+    for bare, lit, coarse in zip(whole.layers, part.layers, narrow.layers, strict=True):
+        radiance, depth = _doubled(coarse), bare.depth.copy()
+        radiance[within], depth[within] = lit.radiance[within], lit.depth[within]
+        layers.append(replace(bare, attributes={"radiance": radiance, "depth": depth}))
+    return replace(whole, layers=tuple(layers))
+
+
+def window_of_c1(settings: Settings) -> tuple[float, float, float, float]:
+    """Where maps show what C1 sees: left, top, right, bottom in parts of their sides; a 64th to spare."""
+    camera, (_, distance) = views.pinhole(views.C1, *settings.size), truth(settings, views.C1)
+    rays = camera.directions()
+    points = camera.eye + rays * (distance / (rays @ camera.axes[2]))[..., None]
+    uv = equirectangular.uv_from_direction(points - sizes.ORIGIN).reshape(-1, 2)
+    least, most = np.floor(64 * uv.min(axis=0)) - 1, np.ceil(64 * uv.max(axis=0)) + 1
+    return tuple(float(part) / 64 for part in (*least, *most))
+
+
 def _successive(settings, width):
-    samples = settings.capture_samples * (settings.widths[-1] // width) ** 2  # as many as mip levels average
+    samples = settings.capture_samples * (settings.usual // width) ** 2  # as many as mip levels average
     options = LayerCapture(width=width, samples=samples)
     room = scene.new_room()
     return split_surfaces(capture_surfaces(room, frame_of(room, sizes.ORIGIN), sizes.RADIUS, options))
@@ -128,17 +158,11 @@ def _narrower(layer, width):
 
 
 def _doubled(layer):
-    """A layer of twice the width, between whose pixels colours and reciprocal depths are interpolated."""
-    width, height = layer.size
-    inside = layer.mask.astype(np.float32)
-    near = np.divide(1, layer.depth, out=np.zeros_like(layer.depth), where=layer.mask)
-    values = np.dstack([layer.radiance * inside[..., None], near, inside]).astype(np.float32)
-    fine = cv2.resize(values, (2 * width, 2 * height), interpolation=cv2.INTER_LINEAR)
-    weight = np.maximum(fine[..., 4:], 1e-6)
-    kept = layer.mask.repeat(2, axis=0).repeat(2, axis=1)
-    depth = np.full(kept.shape, np.nan, np.float32)
-    depth[kept] = (weight[..., 0] / np.maximum(fine[..., 3], 1e-9))[kept]
-    return Layer(layer.name, layer.mapping, {"radiance": fine[..., :3] / weight, "depth": depth})
+    """Radiance (2 H, 2 W, 3) of twice a layer's width: interpolated; none far outside of the domain."""
+    inside = layer.mask.astype(np.float32)[..., None]
+    values = np.concatenate([layer.radiance * inside, inside], axis=2).astype(np.float32)
+    fine = cv2.resize(values, (2 * layer.size[0], 2 * layer.size[1]), interpolation=cv2.INTER_LINEAR)
+    return fine[..., :3] / np.maximum(fine[..., 3:], 1e-6)
 
 
 def _nearest(found):

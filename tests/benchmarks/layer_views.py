@@ -2,8 +2,9 @@
 
 Methods x views of Table 8.1 and C1; resolutions; kinds of layers; distances from the centre until beyond the
 radius. Writes docs/charts/layer_views.json and .png, and C1's pictures, layer_views_c1.jpg. Captures and
-truths are kept in out/bench/layers/. With --toy all is tiny and goes to out/bench/layers_toy/. Seconds are
-the processor's; memory is what the process takes beside its panorama, and needs Linux.
+truths are kept in out/bench/layers/. With --resolutions only C1 is seen again, in layers of every width; the
+other rows stay. With --toy all is tiny and goes to out/bench/layers_toy/. Seconds are the processor's; memory
+is what the process takes beside its panorama, and needs Linux.
 """
 
 import ctypes
@@ -30,6 +31,8 @@ from expanded_panoramas.sample_scenes.layered_room.views import C0, C1, pinhole
 
 BOUND = "bound"
 DEFINITIONS = {
+    "width": "pixels: layers of the usual width are captured, narrower ones are their mip levels; of wider "
+    "ones depth is captured, and light where C1 looks; elsewhere it is interpolated, and C1 doesn't show it",
     "psnr": "dB of sRGB display values against Cycles, holes black",
     "flip": "mean of NVIDIA's LDR-FLIP, 67 pixels per degree",
     "holes": "pixels",
@@ -45,7 +48,11 @@ def main():
     """Measure, and write figures and charts."""
     settings = cases.TOY if "--toy" in sys.argv else cases.FULL
     settings.folder.mkdir(parents=True, exist_ok=True)
-    rows = [row for kind, width, seen in plan(settings) for row in measured(settings, kind, width, seen)]
+    again = "--resolutions" in sys.argv
+    planned = [(cases.TWO, width, [C1]) for width in settings.widths] if again else plan(settings)
+    rows = [row for kind, width, seen in planned for row in measured(settings, kind, width, seen)]
+    if again:
+        rows = with_others(settings, rows)
     document = {
         "cores": os.cpu_count(),
         "size": settings.size,
@@ -61,7 +68,8 @@ def main():
     text = json.dumps(document, indent=1, ensure_ascii=False)
     (settings.charts / "layer_views.json").write_text(text + "\n", encoding="utf-8")
     charts.draw(document, settings.charts / "layer_views.png")
-    charts.sheet(c1_pictures(settings), settings.charts / "layer_views_c1.jpg")
+    if not again:
+        charts.sheet(c1_pictures(settings), settings.charts / "layer_views_c1.jpg")
     print(json.dumps(document["summary"], indent=1))
 
 
@@ -73,7 +81,16 @@ def plan(settings):
         yield cases.TWO, width, views.get(width, [C1])
     for kind in (cases.ONE, cases.MADE, cases.SURFACES):
         yield kind, settings.kinds_width, settings.compared
-    yield cases.ENLARGED, 2 * settings.widths[-1], [C1]
+
+
+def with_others(settings, rows):
+    """Rows, and those of other layers and views that were measured before."""
+    told = [[row[key] for key in ("kind", "width", "view")] for row in rows]
+    before = json.loads((settings.charts / "layer_views.json").read_text(encoding="utf-8"))["rows"]
+    rows = [row for row in before if [row[key] for key in ("kind", "width", "view")] not in told] + rows
+    order = [(kind, width) for kind, width, _ in plan(settings)]
+    known = [row for row in rows if (row["kind"], row["width"]) in order]
+    return sorted(known, key=lambda row: order.index((row["kind"], row["width"])))
 
 
 def measured(settings, kind, width, seen):
@@ -158,7 +175,7 @@ def summary(settings, rows):
         method: round(at_c1[method]["triangles"] / at_c1["grid"]["triangles"], 5)
         for method in ("quadtree", "mesh")
     }
-    widest = {row["method"]: row for row in rows if row["kind"] == cases.ENLARGED}
+    widest = {row["method"]: row for row in rows if row["width"] == settings.widths[-1]}
     return {
         "best_method": best,
         "best_below_bound_db": round(at_c1[BOUND]["psnr"] - at_c1[best]["psnr"], 2),
@@ -167,7 +184,10 @@ def summary(settings, rows):
         "triangles_of_grid": shares,
         "quadtree_below_grid_db": round(at_c1["grid"]["psnr"] - at_c1["quadtree"]["psnr"], 2),
         "mesh_below_quadtree_db": round(at_c1["quadtree"]["psnr"] - at_c1["mesh"]["psnr"], 2),
-        "widest": 2 * settings.widths[-1],
+        "widest": settings.widths[-1],
+        "widest_below_bound_db": {
+            method: round(widest[BOUND]["psnr"] - widest[method]["psnr"], 2) for method in METHODS
+        },
         "widest_adaptive_seconds": widest["adaptive"]["seconds"],
         "widest_prepare": {
             method: [widest[method]["prepare_seconds"], widest[method]["prepare_memory"]]
