@@ -22,12 +22,17 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
 
     That is what renders show of the role SYNTHETIC, unless its ray visibility leaves shadows out: what the
     photograph shows throws its shadows there already. What views alone show, by a collection that renders
-    leave out, throws none.
+    leave out, throws none. Points of no triangle, a path's for instance, are left out.
+
+    Raises ValueError that names a thing whose points are not finite.
     """
     points, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
     for instance, mesh in shown_meshes(depsgraph, throws_shadow):
-        points.append(points_of(instance, mesh))
-        triangles.append(numbers(mesh.loop_triangles, "vertices", np.int32) + count)
+        corners = numbers(mesh.loop_triangles, "vertices", np.int32)
+        is_used = np.zeros(len(mesh.vertices), bool)
+        is_used[corners] = True
+        points.append(points_of(instance, mesh)[is_used])
+        triangles.append((np.cumsum(is_used) - 1)[corners] + count)
         count += len(points[-1])
     return np.concatenate(points), np.concatenate(triangles)
 
@@ -63,29 +68,35 @@ def shown_instances(
         stands = instance.parent.original if instance.is_instance else own
         if own.type not in kinds or not instance.show_self or stands in hidden:
             continue
-        if own.hide_render or stands.hide_render or own in _hidden_parts(stands, parts):
-            continue
+        by_nodes = instance.is_instance and stands.instance_type == "NONE"
+        if stands.hide_render or (own.hide_render and not by_nodes) or own in _hidden_parts(stands, parts):
+            continue  # geometry nodes repeat what renders leave out, too
         yield instance
 
 
 def throws_shadow(thing: bpy.types.Object) -> bool:
-    """Whether an object, evaluated or not, throws shadows as far as it is its own to say."""
+    """Whether an object, evaluated or not, throws shadows where renders show it."""
     own = thing.original
-    if own.hide_render or roles.LAMP in own:
-        return False
-    return thing.visible_shadow and own.panorama_role == roles.SYNTHETIC
+    return thing.visible_shadow and own.panorama_role == roles.SYNTHETIC and roles.LAMP not in own
 
 
 def points_of(instance: bpy.types.DepsgraphObjectInstance, mesh: bpy.types.Mesh) -> np.ndarray:
-    """Vertices (V, 3) in the world [m]."""
+    """Vertices (V, 3) in the world [m].
+
+    Raises ValueError that names the object where they are not finite.
+    """
     matrix = np.array(instance.matrix_world)
-    return numbers(mesh.vertices, "co", np.float32) @ matrix[:3, :3].T + matrix[:3, 3]
+    points = numbers(mesh.vertices, "co", np.float32) @ matrix[:3, :3].T + matrix[:3, 3]
+    if not np.isfinite(points).all():
+        raise ValueError(f"'{instance.object.name}' has vertices whose places are not finite numbers")
+    return points
 
 
 def throwing_names(scene: bpy.types.Scene) -> frozenset[str]:
     """Names of the scene's objects that throw shadows as far as it is theirs to say: compared with those of
     an earlier moment, it tells a change that no update names."""
-    return frozenset(thing.name for thing in scene.objects if thing.type in KINDS and throws_shadow(thing))
+    things = (thing for thing in scene.objects if thing.type in KINDS and not thing.hide_render)
+    return frozenset(thing.name for thing in things if throws_shadow(thing))
 
 
 def _hidden(view_layer):

@@ -1,0 +1,66 @@
+"""What throws shadows: points that a map has to cover, things that geometry nodes repeat, broken meshes."""
+
+import bpy
+import numpy as np
+import pytest
+import small_scenes
+
+from expanded_panoramas.cycles_integration.node_trees import add, new_group, output_group
+from expanded_panoramas.cycles_integration.shadow_preview import casters_of
+
+
+@pytest.fixture
+def ball(fresh_blend):
+    """A ball of 0.3 m, 0.5 m beside the origin."""
+    scene = fresh_blend.context.scene
+    return small_scenes.add_ball(scene, small_scenes.material(small_scenes.DIFFUSE), 0.3, (0.5, 0, 0))
+
+
+def add_thing(name, data):
+    thing = bpy.data.objects.new(name, data)
+    bpy.context.scene.collection.objects.link(thing)
+    return thing
+
+
+def found():
+    bpy.context.view_layer.update()
+    return casters_of(bpy.context.evaluated_depsgraph_get())
+
+
+def test_points_of_no_triangle_widen_no_map(ball):
+    """The path that a camera follows, and a vertex that an artist forgot."""
+    path = bpy.data.curves.new("path", "CURVE")
+    line = path.splines.new("POLY")
+    line.points.add(1)
+    line.points[1].co = (50, 0, 0, 1)
+    add_thing("path", path)
+    loose = bpy.data.meshes.new("loose")
+    loose.from_pydata([(9, 9, 9), (0, 0, 0.1), (0.1, 0, 0), (0, 0.1, 0)], [], [(1, 2, 3)])
+    add_thing("loose", loose)
+    points, triangles = found()
+    assert np.abs(points).max() < 1
+    expected = [(0, 0, 0.1), (0.1, 0, 0), (0, 0.1, 0)]
+    np.testing.assert_allclose(points[triangles[-1]], expected, atol=1e-7)
+
+
+def test_geometry_nodes_repeat_what_renders_leave_out(ball):
+    """As Cycles does; vertex instances of it are left out."""
+    one = len(found()[1])
+    tree = new_group("repeat", "GeometryNodeTree", {"Geometry": "NodeSocketGeometry"})
+    whole = add(tree, "GeometryNodeObjectInfo", {"Object": ball, "As Instance": True})
+    output_group(tree, Geometry=whole.outputs["Geometry"])
+    field = add_thing("field", bpy.data.meshes.new("field"))
+    field.modifiers.new("repeat", "NODES").node_group = tree
+    assert len(found()[1]) == 2 * one
+    ball.hide_render = True
+    assert len(found()[1]) == one
+    field.modifiers.clear()
+    field.data.from_pydata([(0, 0, 0), (1, 0, 0)], [], [])
+    ball.parent, field.instance_type = field, "VERTS"
+    assert len(found()[1]) == 0
+
+
+def test_a_mesh_with_places_that_are_no_numbers_is_named(ball):
+    ball.data.vertices[7].co.z = float("nan")
+    with pytest.raises(ValueError, match="'ball' has vertices whose places are not finite numbers"):
+        found()
