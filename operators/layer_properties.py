@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from ..ibl_toolkit.layers.errors import LayersError
 from ..ibl_toolkit.layers.files.xml_file import NAME, read_xml
@@ -50,6 +50,16 @@ class PanoramaLayers(bpy.types.PropertyGroup):
         default=4,
         min=1,
         soft_max=8,
+    )
+    infinity: BoolProperty(
+        name="Infinity Apart",
+        description="What moves by less than a pixel within the radius becomes a layer at infinity, which "
+        "has no parallax",
+    )
+    geometry: BoolProperty(
+        name="Floor and Walls Apart",
+        description="The largest layer becomes layers of its floor, ceiling, walls, lights and the rest: "
+        "each an object when opened",
     )
     found: StringProperty(description="What the folder holds; empty where that are no layers")
     problem: StringProperty(description="Why what is in the folder cannot be used")

@@ -21,6 +21,7 @@ from ..ibl_toolkit.layers.files.folder import refuse_other_folder, write_folder
 from ..ibl_toolkit.layers.files.storage import read_layers
 from ..ibl_toolkit.layers.making.check import check_layers
 from ..ibl_toolkit.layers.making.from_rgbd import layers_of
+from ..ibl_toolkit.layers.making.sorting import Classes, sorted_layers
 from . import progress
 from .layer_properties import folder_of, look_into_folder
 from .long_work import LongWork
@@ -33,9 +34,15 @@ FORMATS = (
 )
 
 
-def make_layers(scene, tell, folder, radius, width, most):
-    """The long part of Make Layers: writes them -> how many there are, and a line for each thing amiss."""
+def make_layers(scene, tell, folder, radius, width, most, classes):
+    """The long part of Make Layers: writes them -> how many there are, and a line for each thing amiss.
+
+    classes: keywords of `Classes`.
+    """
     panorama, continuous = _captured(scene, tell, radius or None, width, most)
+    if any(classes.values()):
+        tell("sorting")
+        panorama, _ = sorted_layers(panorama, Classes(**classes))
     tell("writing")
     write_folder(panorama, folder)
     tell("checking")
@@ -97,6 +104,7 @@ class PANORAMA_OT_make_layers(LongWork, bpy.types.Operator):
             "radius": layers.radius,
             "width": layers.width // 2 * 2,
             "most": layers.most,
+            "classes": {"geometry": layers.geometry, "infinity": layers.infinity},
         }
 
     def apply(self, scene, found):

@@ -23,7 +23,7 @@ class PANORAMA_PT_layers(Step, bpy.types.Panel):
         column = layout.column()
         column.use_property_split, column.use_property_decorate = True, False
         column.prop(layers, "folder")
-        for name in ("radius", "width", "most"):
+        for name in ("radius", "width", "most", "infinity", "geometry"):
             column.prop(layers, name)
         self.say(context, making_missing(scene))
         layout.operator("panorama.make_layers", icon="RENDERLAYERS")

@@ -75,6 +75,20 @@ def test_of_an_rgbd_panorama_the_file_s_own_depth_is_taken(fresh_blend, tmp_path
     assert panorama.radius > 0.4  # half of what is nearest, none being given
 
 
+def test_they_are_sorted_if_asked(fresh_blend, tmp_path):
+    towards = equirectangular.pixel_directions(WIDTH, WIDTH // 2)
+    depth = np.where(towards[..., 0] > 0.9, 1, 3).astype(np.float32)
+    depth[towards[..., 2] > 0.9] = np.inf
+    write_rgbd(tmp_path / "deep.exr", RGBD(radiance_in(towards), depth, ROTATION, 1.5))
+    fresh_blend.ops.panorama.load_rgbd(filepath=str(tmp_path / "deep.exr"))
+    layers = fresh_blend.context.scene.panorama_layers
+    layers.folder, layers.geometry, layers.infinity = str(tmp_path / "layers"), True, True
+    assert fresh_blend.ops.panorama.make_layers() == {"FINISHED"}
+    names = [layer.name for layer in read_layers(tmp_path / "layers").layers]
+    assert {"infinity", "front 1, walls", "front 2"} <= set(names)  # before the sky is the room
+    assert layers.found.startswith(", ".join(names))
+
+
 def test_too_few_layers_are_warned_of(fresh_blend, tmp_path, capfd):
     """Of an RGB-D panorama, whose layers should be continuous; not of surfaces, which meshes bridge."""
     towards = equirectangular.pixel_directions(WIDTH, WIDTH // 2)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..making.continuous_pieces import mesh_pieces
+from ..making.continuous_pieces import mesh_pieces, with_hidden_rim
 from ..meshes.bounded_mesh import bounded_mesh
 from ..meshes.layer_mesh import quadtree_mesh, quadtree_of, uniform_mesh
 from ..meshes.parallax import pixel_angle
@@ -104,10 +104,13 @@ def parts_of(layer: Layer, far: float) -> list[Layer]:
 def mesh_parts(panorama: LayeredPanorama, layer: Layer, far: float) -> list[Layer]:
     """What of a layer one mesh shall be of: its `parts_of`, taken apart where their depth jumps.
 
-    So no mesh joins what is seen apart from within `shape_radius`.
+    So no mesh joins what is seen apart from within `shape_radius`. Each goes on a little behind the others.
     """
-    radius = shape_radius(panorama)
-    return [piece for part in parts_of(layer, far) for piece in mesh_pieces(part, radius)]
+    radius, found = shape_radius(panorama), []
+    for part in parts_of(layer, far):
+        pieces = mesh_pieces(part, radius)
+        found += pieces if len(pieces) == 1 else [with_hidden_rim(piece, part) for piece in pieces]
+    return found
 
 
 def far_radius(panorama: LayeredPanorama) -> float:

@@ -17,6 +17,9 @@ SHEET_DEG = 1.0
 """A mesh may join two sides of a jump where no view from within the radius sees them farther apart: through a
 slit so narrow what is behind shows wrongly more often than such a sheet does."""
 
+RIM_PX = 2
+"""As much as layers of surfaces reach beyond what can be seen of them, see `uncovered.MARGIN_PX`."""
+
 
 def cut_at_jumps(panorama: LayeredPanorama) -> LayeredPanorama:
     """The panorama with each layer in its `mesh_pieces`, named as they are or by the next number that is
@@ -36,6 +39,31 @@ def cut_at_jumps(panorama: LayeredPanorama) -> LayeredPanorama:
 def mesh_pieces(layer: Layer, radius: float) -> tuple[Layer, ...]:
     """`continuous_pieces` of a layer for meshes, which may bridge jumps of less than `SHEET_DEG`."""
     return continuous_pieces(layer, radius, max(TOLERANCE_PX, np.radians(SHEET_DEG) / grid_of(layer).pixel))
+
+
+def with_hidden_rim(piece: Layer, layer: Layer) -> Layer:
+    """A piece of a layer that goes on behind the layer's other pieces, where those are nearer, by `RIM_PX`.
+
+    So it overlaps what another layer has behind them, and no slit is left between the two.
+    """
+    grid = grid_of(layer)
+    seen = grid.flat(np.where(layer.mask, nearness(layer.depth), np.float32(np.nan)))
+    near = grid.flat(np.where(piece.mask, nearness(piece.depth), np.float32(np.nan))).copy()
+    for _ in range(RIM_PX):
+        inside = ~np.isnan(near)
+        beyond = np.flatnonzero(~inside & inside[grid.neighbours].any(axis=0) & ~np.isnan(seen))
+        beside = near[grid.neighbours[:, beyond]]
+        farther = beside < seen[beyond]
+        number = farther.sum(axis=0)
+        means = np.where(farther, beside, 0).sum(axis=0) / np.maximum(number, 1)
+        near[beyond[number > 0]] = means[number > 0]
+    hidden = ~np.isnan(grid.image(near)) & ~piece.mask
+    with np.errstate(divide="ignore"):
+        depth = np.where(hidden, 1 / grid.image(near), piece.depth)
+    attributes = {**piece.attributes, "depth": depth}
+    if "mask" in attributes:
+        attributes["mask"] = piece.mask | hidden
+    return replace(piece, attributes=attributes)
 
 
 def continuous_pieces(layer: Layer, radius: float, tolerance_px: float = TOLERANCE_PX) -> tuple[Layer, ...]:

@@ -9,7 +9,7 @@ LAST_HEADER = 26
 """Height of the last panel, which is closed, at the lower edge of the sidebar that is scrolled down [px]."""
 ABOVE = 12
 """Middle of the header of the panel before it, above that [px]."""
-PANEL = 250
+PANEL = 297
 """Height of the panel [px]."""
 MINUTES = 180
 """A child Blender renders with all that the machine has [s]."""

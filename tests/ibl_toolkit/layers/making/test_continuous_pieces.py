@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from box_layers import BOTH, box_depth, box_layer, directions, layer_of, off_the_walls
@@ -11,6 +12,7 @@ from expanded_panoramas.ibl_toolkit.layers.making.continuous_pieces import (
     continuous_pieces,
     cut_at_jumps,
     mesh_pieces,
+    with_hidden_rim,
 )
 from expanded_panoramas.ibl_toolkit.layers.meshes.bounded_mesh import bounded_mesh
 from expanded_panoramas.ibl_toolkit.layers.meshes.mesh_error import mesh_error
@@ -130,9 +132,22 @@ def test_no_exported_triangle_joins_a_ball_to_the_wall(mapping, mesh):
 def test_an_exported_mesh_that_goes_beyond_its_piece_is_masked_by_it():
     room = painted("equirectangular")
     pieces = pieces_of(LayeredPanorama((room,), np.eye(3), np.zeros(3), RADIUS), 1.0, MESHES["mesh"])
-    alpha = [piece.texture.pixels[..., 3] > 0 for piece in pieces]
-    assert (alpha[0] != alpha[1]).all()
-    assert alpha[1].sum() == mesh_pieces(room, RADIUS)[1].mask.sum()
+    wall, balls = (piece.texture.pixels[..., 3] > 0 for piece in pieces)
+    np.testing.assert_array_equal(balls, mesh_pieces(room, RADIUS)[1].mask)
+    assert (wall | balls).all()
+    inner = cv2.erode(balls.astype(np.uint8), np.ones((5, 5))) > 0
+    assert not (wall & inner).any()  # it goes on for two pixels behind them
+
+
+@pytest.mark.parametrize("mapping", BOTH)
+def test_what_is_behind_goes_on_under_the_rim_of_what_is_before_it(mapping):
+    room = layer_of(mapping, room_with_balls(mapping)[0])
+    wall, balls = (with_hidden_rim(piece, room) for piece in mesh_pieces(room, RADIUS))
+    hidden = wall.mask & balls.mask
+    walls = box_depth(mapping, WIDTHS[mapping])
+    assert hidden.any()
+    assert np.quantile(np.abs(wall.depth / walls - 1)[hidden], 0.98) < 0.06
+    np.testing.assert_array_equal(balls.depth[hidden], room.depth[hidden])
 
 
 def test_meshes_keep_narrow_sheets():
