@@ -23,7 +23,7 @@ def camera_of(
 ) -> Pinhole:
     """The scene's camera, or that of a name; in a place without one, its origin, looking at points (n, 3).
 
-    Raises ValueError where there is none, or one that is not a plain perspective.
+    Raises ValueError where there is none, or what is no plain perspective camera.
     """
     render = scene.render
     width, height = (
@@ -37,8 +37,8 @@ def camera_of(
         if np.linalg.norm((middle - eye)[:2]) < 0.1 * abs(middle[2] - eye[2]):
             middle = eye + np.array([1.0, 0.0, 0.0])  # what is straight below has no upright picture
         return Pinhole.looking_at(eye, middle, FROM_ORIGIN_DEG, width, height)
-    if thing.data.type != "PERSP":
-        raise ValueError(f"camera '{thing.name}' must be a perspective one: the page draws no other")
+    if thing.type != "CAMERA" or thing.data.type != "PERSP":
+        raise ValueError(f"'{thing.name}' must be a perspective camera: the page looks through no other")
     evaluated = thing.evaluated_get(depsgraph)
     clip = np.array(
         evaluated.calc_matrix_camera(
@@ -80,7 +80,8 @@ def background_of(
         matrix = np.array(place.origin.matrix_world.normalized())
         shown = exposure or gain * 2.0**scene.panorama_view.exposure
         return Background(image, "panorama", shown, matrix[:3, 3], matrix[:3, :3]), camera, []
-    photo = _photo(_camera(scene, name).data)
+    thing = _camera(scene, name)
+    photo = None if thing is None else _photo(thing.data)
     if photo is not None:
         image, camera, warnings = _fitted(photo, camera)
         shown = exposure or gain

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -16,6 +17,7 @@ from ...ibl_toolkit.mobile.web_page import Background
 from .. import maps
 from .camera import world_colour
 from .lights import PageLight, own_lights
+from .meshes import joined
 
 LIGHTS_WIDTH = 1024
 """A panorama's lights are looked for on a map of at most this width [px]."""
@@ -38,21 +40,20 @@ def lighting_of(
 
     Raises ValueError without any light, and for a panorama's without one.
     """
-    points = np.concatenate([mesh.points for mesh in meshes if mesh.throws])
-    own = own_lights(depsgraph, points)
+    points, triangles = joined([mesh for mesh in meshes if mesh.throws])
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    own = own_lights(depsgraph, points, triangles)
     if light_from == "auto":
         light_from = "scene" if panorama is None or any(one.throws for one in own) else "panorama"
     if light_from != "scene" and panorama is None:
         raise ValueError(f"scene '{scene.name}' has no panorama whose lights could be taken")
     if light_from == "scene":
-        found, (ambient, warnings) = own, _ambient(scene, panorama, own, points)
+        found, (ambient, warnings) = own, _ambient(scene, panorama, own, middle)
     else:
-        found, ambient, warnings = _of_panorama(panorama, points, meshes, most)
+        found, ambient, warnings = _of_panorama(panorama, points, meshes, most, middle)
     if light_from == "both":
         found += [one for one in own if not one.is_picked]
-    middle = _middle(points)
-    throwing = [one for one in found if one.throws]
-    throwing.sort(key=lambda one: -float(one.irradiance(middle) @ LUMINANCE))
+    throwing = _strongest_first([one for one in found if one.throws], middle)
     if not throwing:
         raise ValueError("no light shines on what throws shadows: add one, or show it in renders")
     if throwing[most:]:
@@ -62,7 +63,7 @@ def lighting_of(
     return throwing[:most], ambient + sum((one.on_faces(middle) for one in left), np.zeros((2, 3))), warnings
 
 
-def _of_panorama(panorama, points, meshes, most):
+def _of_panorama(panorama, points, meshes, most, middle):
     found = device_lights(
         maps.shrink(panorama.image, LIGHTS_WIDTH),
         points,
@@ -71,7 +72,8 @@ def _of_panorama(panorama, points, meshes, most):
         panorama.world_from_panorama,
         _reach(panorama, [mesh for mesh in meshes if mesh.role == "support"]),
     )
-    lights = [PageLight(f"panorama {k}", light) for k, light in enumerate(found.lights, 1)]
+    lights = _strongest_first([PageLight("panorama", light) for light in found.lights], middle)
+    lights = [replace(one, name=f"{one.name} {k}") for k, one in enumerate(lights, 1)]
     return lights, np.array([found.ambient, found.ambient_down]), list(found.warnings)
 
 
@@ -89,16 +91,16 @@ def _reach(panorama, surfaces):
     return lambda directions: np.array([distance(one) for one in directions @ panorama.world_from_panorama.T])
 
 
-def _ambient(scene, panorama, own, points):
+def _ambient(scene, panorama, own, middle):
     """Irradiance (2, 3) of faces that look up and down besides the scene's own lights, and warnings."""
     if panorama is None:
         colour, warnings = world_colour(scene)
         return np.tile(np.zeros(3) if colour is None else np.pi * colour, (2, 1)), warnings
     image, up = maps.shrink(panorama.image, LIGHTS_WIDTH), panorama.world_from_panorama[2]
     whole = np.array([floor_irradiance(image, way) for way in (up, -up)])
-    picked = sum((one.on_faces(_middle(points)) for one in own if one.is_picked), np.zeros((2, 3)))
+    picked = sum((one.on_faces(middle) for one in own if one.is_picked), np.zeros((2, 3)))
     return np.maximum(whole - picked, 0), []
 
 
-def _middle(points):
-    return (points.min(axis=0) + points.max(axis=0)) / 2
+def _strongest_first(lights, place):
+    return sorted(lights, key=lambda one: -float(one.irradiance(place) @ LUMINANCE))

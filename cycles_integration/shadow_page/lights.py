@@ -6,12 +6,14 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Vector
+from mathutils.bvhtree import BVHTree
 
 from ...ibl_toolkit.mobile.shadow_maps import LightCamera
 from ...ibl_toolkit.mobile.shadow_scene import SceneLight
 from ..picked_sun import LAMP_DIRECTION
 from ..shadow_preview.casters import shown_instances
-from ..shadow_preview.strength import strength_of
+from ..shadow_preview.strength import strength_at
 
 
 @dataclass(frozen=True)
@@ -35,36 +37,42 @@ class PageLight:
         return np.outer(np.maximum([to_light[2], -to_light[2]], 0), self.irradiance(place))
 
 
-def own_lights(depsgraph: bpy.types.Depsgraph, points: np.ndarray) -> list[PageLight]:
-    """The lights that renders show and that shine on points (n, 3) [m] which throw shadows.
+def own_lights(depsgraph: bpy.types.Depsgraph, points: np.ndarray, triangles: np.ndarray) -> list[PageLight]:
+    """The lights that renders show and that shine on points (n, 3) [m] of triangles (T, 3), which throw
+    shadows; those of instanced collections, too.
 
-    Suns that stand for the whole panorama of a place are left out. A spot counts as far as its cone has one
-    of the points in it; an area light shines evenly, as strongly as it does on the points in the mean.
+    Suns that stand for the whole panorama of a place are left out. A spot counts if its cone has one of the
+    points in it, or its middle meets a triangle; an area light shines evenly, as strongly as it does on the
+    points in the mean.
     """
     suns = depsgraph.scene.original.panorama_place.suns
     of_place = set(suns.objects) if suns else set()
-    shown = [one.object.original for one in shown_instances(depsgraph, {"LIGHT"}) if not one.is_instance]
-    lights = [(one, _light(one, depsgraph, points)) for one in shown if one not in of_place]
-    return [
-        PageLight(one.name, light, LAMP_DIRECTION in one, _throws(one.data))
-        for one, light in lights
-        if light is not None and max(light.strength) > 0
-    ]
+    found = []
+    for instance in shown_instances(depsgraph, {"LIGHT"}):
+        own = instance.object.original
+        if own in of_place:
+            continue
+        light = _light(instance.object.data, instance.matrix_world, points, triangles)
+        if light is not None and max(light.strength) > 0:
+            found.append(PageLight(own.name, light, LAMP_DIRECTION in own, _throws(own.data)))
+    return found
 
 
-def _light(light, depsgraph, points):
+def _light(data, world_from_light, points, triangles):
     """None where it throws no light on the points."""
-    strength = strength_of(light, depsgraph)
-    thing = light.evaluated_get(depsgraph)
-    matrix = np.array(thing.matrix_world)
-    if thing.data.type == "SUN":
-        return SceneLight(LightCamera.of_sun(matrix[:3, 2], points), tuple(strength))
-    cosines = _cosines(points - matrix[:3, 3], -matrix[:3, 2])
-    if thing.data.type == "SPOT" and cosines.max() < np.cos(thing.data.spot_size / 2):
-        return None
-    if thing.data.type == "AREA":
+    strength = strength_at(data, world_from_light)
+    matrix = np.array(world_from_light)
+    eye, forward = matrix[:3, 3], -matrix[:3, 2]
+    if data.type == "SUN":
+        return SceneLight(LightCamera.of_sun(-forward, points), tuple(strength))
+    cosines = _cosines(points - eye, forward)
+    if data.type == "SPOT" and cosines.max() < np.cos(data.spot_size / 2):
+        things = BVHTree.FromPolygons(points.tolist(), triangles.tolist())
+        if things.ray_cast(Vector(eye), Vector(forward))[0] is None:
+            return None
+    if data.type == "AREA":
         strength = strength * np.maximum(cosines, 0).mean()
-    return SceneLight(LightCamera.of_lamp(matrix[:3, 3], points), tuple(strength))
+    return SceneLight(LightCamera.of_lamp(eye, points), tuple(strength))
 
 
 def _throws(data):

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .casters import casters_of
 
@@ -17,13 +18,17 @@ def strength_of(light: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> np.n
     counts as none. Nodes of the light are left out.
     """
     thing = light.evaluated_get(depsgraph)
-    data = thing.data
+    return strength_at(thing.data, thing.matrix_world)
+
+
+def strength_at(data: bpy.types.Light, matrix: Matrix) -> np.ndarray:
+    """`strength_of` evaluated data, which an object or an instance has at a place of the world."""
     colour = np.array(data.color)
     if data.use_temperature:
         colour = colour * data.temperature_color
     solid_angle = {"SUN": 1.0, "AREA": np.pi}.get(data.type, 4 * np.pi)
     strength = colour * data.energy * 2.0**data.exposure / solid_angle
-    return np.maximum(strength if data.normalize else strength * _size(thing), 0.0)
+    return np.maximum(strength if data.normalize else strength * _size(data, matrix), 0.0)
 
 
 def strongest_first(
@@ -43,14 +48,13 @@ def strongest_first(
     return sorted(lights, key=darkness)
 
 
-def _size(thing):
+def _size(data, matrix):
     """What the power of a light without Normalize is multiplied with: its area [m²], a sun's in the sky."""
-    data = thing.data
     if data.type == "SUN":
         return np.pi * np.sin(data.angle / 2) ** 2 or 1.0
     if data.type != "AREA":
         return 4 * np.pi * data.shadow_soft_size**2 or 4.0  # of no size: Cycles' own convention
-    across, along, _ = thing.matrix_world.to_scale()
+    across, along, _ = matrix.to_scale()
     is_long = data.shape in {"RECTANGLE", "ELLIPSE"}
     area = data.size * across * (data.size_y if is_long else data.size) * along
     return area * (np.pi / 4 if data.shape in {"DISK", "ELLIPSE"} else 1.0)

@@ -8,6 +8,7 @@ from box_room import EYE, HIGH, LAMP, TURNS, box_room, lamp_map
 from mathutils import Matrix, Vector
 
 from expanded_panoramas.cycles_integration.shadow_page import page_scene
+from expanded_panoramas.cycles_integration.shadow_page.lighting import lighting_of
 from expanded_panoramas.ibl_toolkit.mobile.device_lights import floor_irradiance
 from expanded_panoramas.ibl_toolkit.mobile.page_picture import page_picture
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import ShadowSettings
@@ -179,6 +180,32 @@ def test_the_strongest_lights_throw_shadows_and_others_only_brighten(scene):
         found_in(scene)
 
 
+def test_lamps_of_an_instanced_rig_shine_where_it_stands(scene):
+    sun, rig = bpy.data.objects["SUN"], bpy.data.collections.new("rig")
+    rig.objects.link(sun)
+    rig.objects.link(add_light("POINT", 100))
+    for light in rig.objects:
+        scene.collection.objects.unlink(light)
+    stand = bpy.data.objects.new("stand", None)
+    stand.instance_type, stand.instance_collection, stand.location = "COLLECTION", rig, (1, 0, 0.5)
+    scene.collection.objects.link(stand)
+    found = found_in(scene)
+    assert set(found.light_names) == {"SUN", "POINT"}
+    lamp = found.scene.lights[found.light_names.index("POINT")]
+    np.testing.assert_allclose(lamp.camera.eye, np.add(LIGHT, (1, 0, 0.5)), atol=1e-6)
+    np.testing.assert_allclose(lamp.strength, 100 / (4 * np.pi), rtol=1e-6)
+
+
+def test_a_spot_that_meets_the_middle_of_a_face_counts(scene):
+    bpy.data.objects.remove(bpy.data.objects["ball"])
+    small.add_plane(scene, small.material(small.DIFFUSE), 4, (0, 0, 0.5))
+    spot = add_light("SPOT", 100, (0, 0, 3))
+    spot.data.spot_size = 0.5
+    assert set(found_in(scene).light_names) == {"SUN", "SPOT"}
+    spot.location.x = 9
+    assert found_in(scene).light_names == ("SUN",)
+
+
 def test_the_camera_sees_what_blenders_does(scene):
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 96, 192, 50
     scene.camera.data.sensor_fit = "AUTO"
@@ -194,10 +221,13 @@ def test_the_camera_sees_what_blenders_does(scene):
     with pytest.raises(ValueError, match="lens shift"):
         found_in(scene)
     scene.camera.data.type = "ORTHO"
-    with pytest.raises(ValueError, match="'Camera' must be a perspective one"):
+    with pytest.raises(ValueError, match="'Camera' must be a perspective camera"):
         found_in(scene)
     with pytest.raises(ValueError, match="no camera 'other'; cameras: Camera"):
         found_in(scene, camera_name="other")
+    scene.camera = bpy.data.objects["plane"]
+    with pytest.raises(ValueError, match="'plane' must be a perspective camera"):
+        found_in(scene)
     scene.camera = None
     with pytest.raises(ValueError, match="has no camera"):
         found_in(scene)
@@ -256,6 +286,19 @@ def test_own_lights_come_before_the_panoramas(fresh_blend, tmp_path):
     both = found_in(scene, light_from="both")
     assert set(both.light_names) == {"panorama 1", "SUN"}
     assert found_in(scene, light_from="panorama").light_names == ("panorama 1",)
+    bpy.data.images.remove(scene.panorama_place.image)
+    assert found_in(scene).light_names == ("SUN",)
+
+
+def test_a_panoramas_lights_are_numbered_as_they_come(scene):
+    """A low one is stronger on what faces it, a high one brings more to the floor."""
+    image = np.full((64, 128, 3), 0.01, np.float32)
+    image[8, 20], image[24, 80] = 2000, 2000
+    panorama, meshes = Background(image, origin=(0, 0, 1.5)), found_in(scene).scene.meshes
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    lights, _, _ = lighting_of(scene, depsgraph, panorama, meshes, "panorama", 8)
+    assert [one.name for one in lights] == ["panorama 1", "panorama 2"]
+    assert lights[0].light.camera.axes[2][2] > lights[1].light.camera.axes[2][2]  # looks down less
 
 
 def test_without_a_panorama_its_lights_cannot_be_taken(scene):
