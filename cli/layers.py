@@ -104,7 +104,7 @@ def add_options(parser):
         help="of a scene: a layer for each collection that is named, in place of one for each surface",
     )
     add("--by-depth", metavar="D,D,…", type=rising, default=(), help="part layers at these distances [m]")
-    add("--by-geometry", action="store_true", help="part the background: floor, ceiling, walls, lights")
+    add("--by-geometry", action="store_true", help="part large layers: floor, ceiling, walls, lights")
     add("--infinity", action="store_true", help="what moves by less than a pixel: a layer at infinity")
     add("--flatten", action="store_true", help="thin ranges of depth: one distance, or one plane")
     add("--levels", metavar="N", type=whole_number(1, 16), default=1, help="mip levels (default: 1)")

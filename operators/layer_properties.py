@@ -58,8 +58,8 @@ class PanoramaLayers(bpy.types.PropertyGroup):
     )
     geometry: BoolProperty(
         name="Floor and Walls Apart",
-        description="The largest layer becomes layers of its floor, ceiling, walls, lights and the rest: "
-        "each an object when opened",
+        description="Large layers become layers of their floor, ceiling, walls, lights and the rest: each "
+        "an object when opened",
     )
     found: StringProperty(description="What the folder holds; empty where that are no layers")
     problem: StringProperty(description="Why what is in the folder cannot be used")

@@ -14,13 +14,15 @@ from .classification import by_depth, flattened, with_infinity
 from .geometry import by_geometry
 from .visibility_order import VisibilityOrder, visibility_order
 
+_LARGE = 0.1
+
 
 @dataclass(frozen=True)
 class Classes:
     """What layers are sorted by.
 
-    depths: distances [m], ascending, at which each layer is parted (6.2.4.1). geometry: whether the
-    background is parted into lights, floor, ceiling, walls and the rest (6.2.4.2). infinity: whether what
+    depths: distances [m], ascending, at which each layer is parted (6.2.4.1). geometry: whether
+    large layers are parted into lights, floor, ceiling, walls and the rest (6.2.4.2). infinity: whether what
     moves by less than a pixel goes to a layer at infinity (6.2.4.3). flat: whether thin ranges become one
     distance or one plane (6.2.4.3).
     """
@@ -37,8 +39,9 @@ class Classes:
 def sorted_layers(panorama: LayeredPanorama, classes: Classes) -> tuple[LayeredPanorama, VisibilityOrder]:
     """The panorama's layers by classes, from back to front, and which of them may hide which (6.2.4.4).
 
-    Parts have the layer's name and the class's: "background, floor", "front 1, to 2 m". The background is
-    the layer with the most pixels at a finite depth.
+    Parts have the layer's name and the class's: "background, floor", "front 1, to 2 m". Large is a layer with
+    a tenth of its map's pixels at a finite depth: a room is, and its floor alone; a sofa, whose seat is not
+    the floor, is not.
 
     Raises: ValueError for depths that are not above 0, finite and ascending.
 
@@ -52,8 +55,10 @@ def sorted_layers(panorama: LayeredPanorama, classes: Classes) -> tuple[LayeredP
         panorama = with_infinity(panorama)
     layers = list(panorama.layers)
     if classes.geometry:
-        place = int(np.argmax([_finite(layer).mean() for layer in layers]))
-        layers[place : place + 1] = by_geometry(layers[place], panorama.world_from_panorama)
+        turn = panorama.world_from_panorama
+        layers = [
+            part for layer in layers for part in (by_geometry(layer, turn) if _large(layer) else [layer])
+        ]
     if classes.depths:
         layers = [part for layer in layers for part in _by_depth(layer, classes.depths)]
     if classes.flat:
@@ -67,6 +72,10 @@ def sorted_layers(panorama: LayeredPanorama, classes: Classes) -> tuple[LayeredP
 def _by_depth(layer: Layer, depths):
     """Its parts; what is at infinity as a whole stays as it is."""
     return by_depth(layer, depths) if _finite(layer).any() else [layer]
+
+
+def _large(layer):
+    return _finite(layer).mean() >= _LARGE
 
 
 def _finite(layer):

@@ -28,7 +28,7 @@ def names(panorama):
     return [layer.name for layer in panorama.layers]
 
 
-def test_the_background_alone_is_parted_by_geometry():
+def test_large_layers_alone_are_parted_by_geometry():
     found, _ = sorted_layers(room(), Classes(geometry=True, infinity=True))
     parts = {"floor", "ceiling", "walls", "rest"}
     assert set(names(found)) == {"thing", "infinity", *(f"room, {part}" for part in parts)}
