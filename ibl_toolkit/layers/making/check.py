@@ -42,7 +42,7 @@ class LayersReport:
         """A line for each thing that is not as it should be."""
         lines = [
             f"layer '{name}': depth jumps between {count} pairs of neighbouring pixels, must between none: "
-            "views from beside will join what is apart"
+            "views by grid and quadtree will join what is apart"
             for name, count in self.jumps.items()
             if count
         ]
