@@ -39,8 +39,9 @@ class Texture:
         return self._files[with_alpha]
 
     def cut_to(self, part: Layer) -> Texture:
-        """The same with the domain of a part of the layer as alpha."""
+        """The same with the domain of a part of the layer as alpha; black where no look-up reaches."""
         pixels = self.pixels.copy()
+        pixels[self.chart.texels(part, _surroundings(part.mask)) == 0] = 0
         pixels[..., 3] = np.round(self.chart.texels(part, part.mask.astype(np.float32)) * 255)
         return Texture(part.name, pixels, self.chart)
 
@@ -100,6 +101,14 @@ def spread(values: np.ndarray, inside: np.ndarray, mapping: str) -> np.ndarray:
     around = min(_SPREAD, inside.shape[1])
     wrapped = [np.pad(a, ((0, 0), (around, around), (0, 0))[: a.ndim], mode="wrap") for a in (values, inside)]
     return _spread(*wrapped)[:, around:-around]
+
+
+def _surroundings(inside):
+    """Where (H, W) a mask is within 16 px, round the seam too, as float32."""
+    around = min(_SPREAD, inside.shape[1])
+    wrapped = np.pad(inside.astype(np.uint8), ((0, 0), (around, around)), mode="wrap")
+    side = 2 * _SPREAD + 1
+    return cv2.dilate(wrapped, np.ones((side, side), np.uint8))[:, around:-around].astype(np.float32)
 
 
 def _spread(values, inside):

@@ -137,6 +137,9 @@ def test_an_exported_mesh_that_goes_beyond_its_piece_is_masked_by_it():
     assert (wall | balls).all()
     inner = cv2.erode(balls.astype(np.uint8), np.ones((5, 5))) > 0
     assert not (wall & inner).any()  # it goes on for two pixels behind them
+    dark = (pieces[1].texture.pixels[..., :3] == 0).all(axis=2)
+    assert dark.mean() > 0.5  # the room's picture is not stored again
+    assert not dark[cv2.dilate(balls.astype(np.uint8), np.ones((9, 9))) > 0].any()
 
 
 @pytest.mark.parametrize("mapping", BOTH)
