@@ -133,10 +133,7 @@ def preview_missing(context) -> str:
 
 
 def size_of(preview) -> str:
-    """What the maps take on the device.
-
-    Raises ValueError for settings that nodes cannot have.
-    """
+    """What the maps take on the device."""
     settings, count = settings_of(preview), len(lights_of(preview))
     return f"{count * settings.bytes_per_texel * settings.resolution**2 / 2**20:.3g} MiB on the device"
 

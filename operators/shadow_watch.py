@@ -63,11 +63,11 @@ def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
 
 def work_off():
     """Make the maps that are out of date of the scenes that are shown."""
+    _marked.intersection_update([scene.name for scene in bpy.data.scenes if is_kept(scene)])
     shown = _shown()
     for name in [name for name in _marked if name in shown]:
         shown[name].update()
         refresh(bpy.data.scenes[name], shown[name].depsgraph or bpy.context.evaluated_depsgraph_get())
-    _marked.intersection_update(name for name in _marked if name in bpy.data.scenes)
 
 
 def settings_changed(preview, context):
@@ -132,6 +132,9 @@ def _concerns(update) -> bool:
 
 @persistent
 def _on_change(scene, depsgraph):
+    preview = scene.panorama_shadow_preview
+    if preview.switched_off and not is_there(preview) and scene.library is None:
+        settle_shadows(preview)  # its groups were deleted by hand
     if is_kept(scene) and (scene.name in _marked or _is_changed(scene, depsgraph)):
         mark(scene)
 

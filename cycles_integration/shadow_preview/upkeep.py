@@ -26,16 +26,16 @@ GROUPS = {
 
 
 def settings_of(preview) -> ShadowSettings:
-    """The settings that a scene's `panorama_shadow_preview` stands for.
+    """The settings that a scene's `panorama_shadow_preview` stands for; nodes cannot have all of them.
 
-    Raises ValueError where nodes cannot have them.
+    Raises ValueError where a device cannot have them either.
     """
     factor, units = preview.offset_factor, preview.offset_units
     bleeding, strength = preview.bleeding_reduction, preview.exponent
     if preview.offset_by_itself:
         factor, units = offsets(preview.method, preview.window)
         bleeding, strength = reduction(preview.method, preview.storage), exponent(preview.storage)
-    settings = ShadowSettings(
+    return ShadowSettings(
         method=preview.method,
         resolution=preview.resolution,
         storage=preview.storage,
@@ -45,8 +45,6 @@ def settings_of(preview) -> ShadowSettings:
         bleeding_reduction=bleeding,
         exponent=strength,
     )
-    refuse_wide(settings, max(len(lights_of(preview)), 1))
-    return settings
 
 
 def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
@@ -54,12 +52,15 @@ def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
 
     more: of GROUPS, those that the preview shall have beside the ones that it has.
     Returns what the maps cannot show, in words.
-    Raises ValueError, with all as it was, where there is no light or no map can be made.
+    Raises ValueError, with all as it was, where there is no light, no map can be made, or nodes cannot have
+    the settings.
     """
     lights = lights_of(preview)
     if not lights:
         raise ValueError("the preview's light is gone: choose another")
-    maps = shadow_maps_of(lights, depsgraph, settings_of(preview))
+    settings = settings_of(preview)
+    refuse_wide(settings, len(lights))
+    maps = shadow_maps_of(lights, depsgraph, settings)
     strengths = [strength_of(light, depsgraph) for light in lights]
     for kind, (property_name, name) in GROUPS.items():
         group = getattr(preview, property_name)
@@ -73,7 +74,8 @@ def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
 
 
 def discard(preview):
-    """Take the preview out of materials, compositor and file; its lights have their own shadows again."""
+    """Take the preview out of materials, compositor and file; its lights have their own shadows again, and
+    so have those of other scenes whose preview was the same, as a copy's is."""
     for property_name, _ in GROUPS.values():
         group = getattr(preview, property_name)
         setattr(preview, property_name, None)
@@ -82,7 +84,9 @@ def discard(preview):
     place = place_in(preview.id_data)
     if place is not None:
         undress(place)
-    settle_shadows(preview)
+    for scene in bpy.data.scenes:
+        if scene.library is None:
+            settle_shadows(scene.panorama_shadow_preview)
 
 
 def _renewed(group, maps, strengths, kind, name):

@@ -51,6 +51,9 @@ def test_page_and_glb_have_the_previews_kind_and_the_visible_lights(scene, tmp_p
     found = extras(tmp_path / "b.glb")
     assert [kind["method"] for kind in found["shadow_settings"]] == ["evsm", "hard", "pcf", "vsm"]
     assert len(found["lights"]) == 1
+    scene.panorama_shadow_preview.method, scene.panorama_shadow_preview.window = "pcf", 15
+    bpy.ops.panorama.export_shadow_page(filepath=str(tmp_path / "c.glb"), file_format=".glb")
+    assert extras(tmp_path / "c.glb")["shadow_settings"][0]["window"] == 15  # more than nodes can have
 
 
 def test_a_preview_that_stands_for_a_light_leaves_it_its_shadow_on_the_page(scene, tmp_path):

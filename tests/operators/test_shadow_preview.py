@@ -317,6 +317,35 @@ def test_one_scenes_preview_leaves_the_lights_of_another_alone(scene):
     assert second.use_shadow
 
 
+def test_what_copies_of_a_scene_share_gives_all_their_shadows_back(scene):
+    bpy.ops.panorama.preview_shadows()
+    bpy.ops.scene.new(type="FULL_COPY")
+    preview = bpy.context.scene.panorama_shadow_preview
+    assert preview.group == scene.panorama_shadow_preview.group
+    assert not any(light.use_shadow for light in bpy.data.lights)
+    bpy.ops.panorama.remove_shadow_preview()
+    assert [light.use_shadow for light in bpy.data.lights] == [True, True]
+
+
+def test_a_group_deleted_by_hand_gives_the_light_its_shadow_back(scene):
+    bpy.ops.panorama.preview_shadows()
+    bpy.data.node_groups.remove(scene.panorama_shadow_preview.group)
+    bpy.context.view_layer.update()
+    assert bpy.data.lights["SUN"].use_shadow
+
+
+def test_what_was_removed_is_not_made_anew(scene):
+    bpy.ops.panorama.preview_shadows()
+    bpy.data.objects["ball"].location.x += 0.1
+    bpy.context.view_layer.update()
+    assert shadow_watch.is_waiting()
+    bpy.ops.panorama.remove_shadow_preview()
+    bpy.data.objects.remove(bpy.data.objects["SUN"])
+    shadow_watch.work_off()
+    assert not shadow_watch.is_waiting()
+    assert scene.panorama_shadow_preview.problem == ""
+
+
 def test_darkness_makes_no_new_map(scene):
     bpy.ops.panorama.preview_shadows()
     at_rest()
