@@ -167,10 +167,12 @@ def _kinds(options, default, extent):
     given = (options.method, options.resolution, options.storage, options.window, options.penumbra)
     if all(value is None for value in given):
         return [default]
-    choices = product(
-        options.method or (default.method,),
-        options.resolution or (default.resolution,),
-        options.storage or (default.storage,),
+    choices = dict.fromkeys(  # each once
+        product(
+            options.method or (default.method,),
+            options.resolution or (default.resolution,),
+            options.storage or (default.storage,),
+        )
     )
     if options.penumbra is not None:
         return [suggested_settings(extent, size, held, options.penumbra, how) for how, size, held in choices]

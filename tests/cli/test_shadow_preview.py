@@ -45,7 +45,7 @@ def test_a_page_has_the_scenes_own_kind_of_shadow_map(scene_file, tmp_path, pano
 
 def test_kinds_are_all_combinations(scene_file, tmp_path, panorama):
     command = ["shadow-preview", scene_file, "-o", tmp_path / "page.html", "--json"]
-    several = ["--method", "hard,evsm", "--resolution", "32,64", "--storage", "8+8"]
+    several = ["--method", "hard,evsm,hard", "--resolution", "32,64", "--storage", "8+8,8+8"]
     _, out, _ = panorama(*command, *several)
     labels = [kind.rpartition(",")[0] for kind in json.loads(out)["kinds"]]
     assert labels[:2] == ["HARD, 32 × 32, 8+8", "HARD, 64 × 64, 8+8"]
