@@ -109,7 +109,7 @@ def mesh_parts(panorama: LayeredPanorama, layer: Layer, far: float) -> list[Laye
     radius, found = shape_radius(panorama), []
     for part in parts_of(layer, far):
         pieces = mesh_pieces(part, radius)
-        found += pieces if len(pieces) == 1 else [with_hidden_rim(piece, part) for piece in pieces]
+        found += pieces if len(pieces) == 1 else [with_hidden_rim(piece, part, radius) for piece in pieces]
     return found
 
 

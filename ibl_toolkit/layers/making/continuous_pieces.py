@@ -38,13 +38,14 @@ def cut_at_jumps(panorama: LayeredPanorama) -> LayeredPanorama:
 
 def mesh_pieces(layer: Layer, radius: float) -> tuple[Layer, ...]:
     """`continuous_pieces` of a layer for meshes, which may bridge jumps of less than `SHEET_DEG`."""
-    return continuous_pieces(layer, radius, max(TOLERANCE_PX, np.radians(SHEET_DEG) / grid_of(layer).pixel))
+    return continuous_pieces(layer, radius, _tolerance(grid_of(layer)))
 
 
-def with_hidden_rim(piece: Layer, layer: Layer) -> Layer:
+def with_hidden_rim(piece: Layer, layer: Layer, radius: float) -> Layer:
     """A piece of a layer that goes on behind the layer's other pieces, where those are nearer, by `RIM_PX`.
 
-    So it overlaps what another layer has behind them, and no slit is left between the two.
+    So it overlaps what another layer has behind them, and no slit is left between the two. It doesn't where
+    its depth would come to jump as seen from within ``radius`` [m], as where parts of it meet behind a twig.
     """
     grid = grid_of(layer)
     seen = grid.flat(np.where(layer.mask, nearness(layer.depth), np.float32(np.nan)))
@@ -57,7 +58,8 @@ def with_hidden_rim(piece: Layer, layer: Layer) -> Layer:
         number = farther.sum(axis=0)
         means = np.where(farther, beside, 0).sum(axis=0) / np.maximum(number, 1)
         near[beyond[number > 0]] = means[number > 0]
-    hidden = ~np.isnan(grid.image(near)) & ~piece.mask
+    jumps = cuts(grid, near, radius, _tolerance(grid)).any(axis=0)
+    hidden = ~np.isnan(grid.image(near)) & ~piece.mask & ~grid.image(jumps)
     with np.errstate(divide="ignore"):
         depth = np.where(hidden, 1 / grid.image(near), piece.depth)
     attributes = {**piece.attributes, "depth": depth}
@@ -97,6 +99,11 @@ def continuous_pieces(layer: Layer, radius: float, tolerance_px: float = TOLERAN
 def part_name(name: str, number: int) -> str:
     """The name of a layer's piece: its own for the first."""
     return name if number == 1 else f"{name}, part {number}"
+
+
+def _tolerance(grid):
+    """`SHEET_DEG` in pixels, at least one."""
+    return max(TOLERANCE_PX, np.radians(SHEET_DEG) / grid.pixel)
 
 
 def _pieces(layer, pieces) -> Iterator[Layer]:

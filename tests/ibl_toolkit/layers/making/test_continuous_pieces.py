@@ -145,7 +145,7 @@ def test_an_exported_mesh_that_goes_beyond_its_piece_is_masked_by_it():
 @pytest.mark.parametrize("mapping", BOTH)
 def test_what_is_behind_goes_on_under_the_rim_of_what_is_before_it(mapping):
     room = layer_of(mapping, room_with_balls(mapping)[0])
-    wall, balls = (with_hidden_rim(piece, room) for piece in mesh_pieces(room, RADIUS))
+    wall, balls = (with_hidden_rim(piece, room, RADIUS) for piece in mesh_pieces(room, RADIUS))
     hidden = wall.mask & balls.mask
     walls = box_depth(mapping, WIDTHS[mapping])
     assert hidden.any()
@@ -160,3 +160,17 @@ def test_meshes_keep_narrow_sheets():
     layer = layer_of("equirectangular", np.where(band, 0.99 * room.depth, room.depth).astype(np.float32))
     assert len(continuous_pieces(layer, 1.8)) > 1
     assert mesh_pieces(layer, 1.8) == (layer,)
+
+
+def test_behind_a_frame_what_is_in_it_and_what_is_round_it_do_not_meet():
+    """Both are of one piece, for it is the frame that each of them jumps to."""
+    depth = np.full((64, 128), 4.0, np.float32)
+    depth[20:44, 40:80] = 1.0
+    depth[23:41, 43:77] = 2.0
+    layer = layer_of("equirectangular", depth)
+    pieces = mesh_pieces(layer, RADIUS)
+    assert [piece.mask[30, 60] for piece in pieces] == [True, False]
+    for piece in pieces:
+        grown = with_hidden_rim(piece, layer, RADIUS)
+        assert mesh_pieces(grown, RADIUS) == (grown,)
+    assert with_hidden_rim(pieces[0], layer, RADIUS).mask.sum() > pieces[0].mask.sum()
