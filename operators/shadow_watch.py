@@ -15,6 +15,7 @@ from ..cycles_integration import roles
 from ..cycles_integration.shadow_preview import (
     KINDS,
     composite_nodes,
+    is_in,
     is_there,
     nodes_of,
     renew,
@@ -116,7 +117,7 @@ def _is_changed(scene, depsgraph) -> bool:
 
 def _role_changed(thing):
     for scene in bpy.data.scenes:
-        if is_kept(scene) and scene.objects.get(thing.name) == thing:
+        if is_kept(scene) and is_in(thing, scene):
             mark(scene)
 
 

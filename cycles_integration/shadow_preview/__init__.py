@@ -16,7 +16,7 @@ from .group import MOST_LOOK_UPS, ShownLight, aim_group, build_group, fits, imag
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_maps_of
 from .map_image import store_map
-from .own_shadow import MOST_LIGHTS, is_gone, is_there, lights_of, settle_shadows
+from .own_shadow import MOST_LIGHTS, is_gone, is_in, is_there, lights_of, settle_shadows
 from .real_surfaces import show_photograph
 from .receivers import has_surface, nodes_of, put_on, take_off
 from .strength import strength_of, strongest_first
@@ -38,6 +38,7 @@ __all__ = [
     "has_surface",
     "images_of",
     "is_gone",
+    "is_in",
     "is_there",
     "lights_of",
     "nodes_of",

@@ -17,8 +17,12 @@ def lights_of(preview) -> list[bpy.types.Object]:
 
 def is_gone(row) -> bool:
     """Whether the light of one of a preview's rows was deleted."""
-    light = row.light
-    return light is not None and row.id_data.objects.get(light.name) != light
+    return row.light is not None and not is_in(row.light, row.id_data)
+
+
+def is_in(thing: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    """Whether a scene has an object. Its name tells it soon, unless one of another file has the same."""
+    return scene.objects.get(thing.name) == thing or thing in scene.objects[:]
 
 
 def is_there(preview) -> bool:

@@ -258,3 +258,19 @@ def test_a_file_of_another_version_is_built_anew(scene):
     (node,) = shadow_preview.nodes_of(bpy.data.materials[0], preview.group)
     assert node.inputs["Surface"].is_linked
     assert "Visibility" in node.outputs
+
+
+def test_a_linked_light_of_the_same_name_is_another(scene, tmp_path):
+    """Names tell apart only what is from one file."""
+    sun = bpy.data.objects["SUN"]
+    bpy.data.libraries.write(str(tmp_path / "rig.blend"), {sun})
+    with bpy.data.libraries.load(str(tmp_path / "rig.blend"), link=True) as (_, to):
+        to.objects = ["SUN"]
+    (linked,) = to.objects
+    scene.collection.objects.link(linked)
+    preview = scene.panorama_shadow_preview
+    for one in (sun, linked):
+        preview.lights.add().light = one
+    assert shadow_preview.lights_of(preview) == [sun, linked]
+    scene.collection.objects.unlink(sun)
+    assert shadow_preview.lights_of(preview) == [linked]
