@@ -58,10 +58,18 @@ export class View {
 
 /* Drag with mouse or finger, zoom with the wheel; changed() after each. */
 export function control(canvas, view, changed) {
-  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+  let last; // where the pointer was; phones of before 2023 have no movementX
+  canvas.addEventListener("pointerdown", (event) => {
+    if (event.isPrimary) {
+      canvas.setPointerCapture(event.pointerId);
+      last = event;
+    }
+  });
   canvas.addEventListener("pointermove", (event) => {
-    if (canvas.hasPointerCapture(event.pointerId) && event.isPrimary) {
-      view.drag(event.movementX / canvas.clientWidth, event.movementY / canvas.clientWidth);
+    if (event.isPrimary && canvas.hasPointerCapture(event.pointerId)) {
+      const [across, down] = [event.clientX - last.clientX, event.clientY - last.clientY];
+      view.drag(across / canvas.clientWidth, down / canvas.clientWidth);
+      last = event;
       changed();
     }
   });

@@ -9,7 +9,7 @@ import web_pages
 from web_pages import CHROMIUM, measured, photo, sky, still_life, white
 
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import suggested_settings
-from expanded_panoramas.ibl_toolkit.mobile.web_page import write_page
+from expanded_panoramas.ibl_toolkit.mobile.web_page import SOURCES, write_page
 
 pytestmark = pytest.mark.skipif(
     not CHROMIUM, reason="needs a Chromium: CHROMIUM=/path/to/chromium, or `chromium` on the PATH"
@@ -114,3 +114,29 @@ def test_where_a_map_fails_the_page_says_why_and_keeps_the_one_it_had(tmp_path):
     assert f"<output>{complaint}</output>" in dumped
     assert after == before
     assert int(before.split()[0]) > 50  # values of pixels: there is a picture
+
+
+DRAG = """
+const listeners = {};
+const canvas = {
+  clientWidth: 100,
+  addEventListener: (name, listener) => { listeners[name] = listener; },
+  setPointerCapture: () => {},
+  hasPointerCapture: () => true,
+};
+const view = new View({ eye: [0, 0, 0], axes: [[0, -1, 0], [0, 0, -1], [1, 0, 0]], half_width: 1 });
+control(canvas, view, () => {});
+listeners.pointerdown({ isPrimary: true, pointerId: 1, clientX: 20, clientY: 50 });
+listeners.pointermove({ isPrimary: true, pointerId: 1, clientX: 70, clientY: 50 });
+listeners.pointermove({ isPrimary: true, pointerId: 1, clientX: 120, clientY: 50 });
+document.body.textContent = view.axes[2].map((v) => v.toFixed(3));
+"""
+
+
+def test_dragging_across_turns_by_the_angle_of_view_without_movement_in_events(tmp_path):
+    """From along x to along y, what was in the middle of 90° being dragged by the picture's whole width."""
+    page = tmp_path / "drag.html"
+    code = (SOURCES / "view.js").read_text(encoding="utf-8")
+    page.write_text(f'<body><script type="module">{code}{DRAG}</script>', encoding="utf-8")
+    found = web_pages.chromium(tmp_path, "--dump-dom", page.as_uri())
+    assert re.search(r"<body>(.*?)</body>", found, re.DOTALL)[1].replace("-0", "0") == "0.000,1.000,0.000"
