@@ -71,9 +71,12 @@ def meshes_of(depsgraph: bpy.types.Depsgraph) -> tuple[list[SceneMesh], list[str
 
 def joined(meshes: Sequence[SceneMesh]) -> tuple[np.ndarray, np.ndarray]:
     """Points (V, 3) and triangles (T, 3) of all together."""
-    first = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
-    triangles = [mesh.triangles + start for mesh, start in zip(meshes, first, strict=False)]
-    return np.concatenate([mesh.points for mesh in meshes]), np.concatenate(triangles)
+    points, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
+    for mesh in meshes:
+        points.append(mesh.points)
+        triangles.append(mesh.triangles + count)
+        count += len(mesh.points)
+    return np.concatenate(points), np.concatenate(triangles)
 
 
 def _corners(instance, mesh):

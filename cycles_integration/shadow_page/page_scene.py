@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import bpy
 
 from ...ibl_toolkit.layers.views.pinhole import Pinhole
-from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings
+from ...ibl_toolkit.mobile.shadow_maps import ShadowSettings, reaching
 from ...ibl_toolkit.mobile.shadow_maps.shadow_map import warnings_of
 from ...ibl_toolkit.mobile.shadow_scene import MOST_LIGHTS, ShadowScene
 from ...ibl_toolkit.mobile.web_page import Background
@@ -59,7 +59,10 @@ def page_scene(
     panorama = background if background.kind == "panorama" and place_in(scene) else None
     lights, ambient, amiss_of_lights = lighting_of(scene, depsgraph, panorama, meshes, light_from, most)
     softest = max(kinds, key=lambda kind: (kind.method != "hard") * kind.window / kind.resolution)
+    ground = joined([mesh for mesh in meshes if not mesh.throws])
     cameras = [one.light.camera.with_border(softest) for one in lights]
+    if any(kind.has_moments for kind in kinds):
+        cameras = [reaching(view, *ground) for view in cameras]
     amiss_of_maps = [
         f"'{one.name}': {text}"
         for one, view in zip(lights, cameras, strict=True)

@@ -26,8 +26,17 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
 
     Raises ValueError that names a thing whose points are not finite.
     """
+    return _triangles(depsgraph, throws_shadow)
+
+
+def ground_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
+    """The same of all that renders show and that throws no shadow, but receives them."""
+    return _triangles(depsgraph, lambda thing: not throws_shadow(thing))
+
+
+def _triangles(depsgraph, is_wanted):
     points, triangles, count = [np.empty((0, 3))], [np.empty((0, 3), np.int64)], 0
-    for instance, mesh in shown_meshes(depsgraph, throws_shadow):
+    for instance, mesh in shown_meshes(depsgraph, is_wanted):
         corners = numbers(mesh.loop_triangles, "vertices", np.int32)
         is_used = np.zeros(len(mesh.vertices), bool)
         is_used[corners] = True

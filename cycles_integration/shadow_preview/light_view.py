@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import bpy
 import numpy as np
 
-from ...ibl_toolkit.mobile.shadow_maps import LightCamera, ShadowMap, ShadowSettings, shadow_map
-from .casters import NOTHING_THROWS, casters_of
+from ...ibl_toolkit.mobile.shadow_maps import LightCamera, ShadowMap, ShadowSettings, reaching, shadow_map
+from .casters import NOTHING_THROWS, casters_of, ground_of
 
 
 def shadow_maps_of(
@@ -16,30 +16,29 @@ def shadow_maps_of(
 ) -> list[ShadowMap]:
     """The maps of what throws shadows in the light of each object as it is evaluated.
 
+    They cover just that, and a border as wide as the filter, so that no blur ends at the map's border. What
+    lies beyond receives shadows all the same, since its depth counts as the farthest.
     Raises ValueError where nothing throws shadows, or a light is at it or in a place that is not finite.
     """
     points, triangles = casters_of(depsgraph)
     if not len(triangles):
         raise ValueError(NOTHING_THROWS)
+    ground = ground_of(depsgraph)
     maps = []
     for light in lights:
         try:
-            camera = light_camera(light, depsgraph, points, settings)
+            camera = light_camera(light, depsgraph, points).with_border(settings)
         except ValueError as error:
             raise ValueError(f"'{light.name}': {error}") from error
-        maps.append(shadow_map(points, triangles, camera, settings))
+        if settings.has_moments:
+            camera = reaching(camera, *ground)
+        maps.append(shadow_map(points, triangles, camera, settings, ground))
     return maps
 
 
-def light_camera(light, depsgraph, points: np.ndarray, settings: ShadowSettings) -> LightCamera:
-    """Where the light looks from: a sun along its beams, any other lamp from its middle to points (n, 3).
-
-    It covers just these, and a border as wide as the filter, so that no blur ends at the map's border. What
-    lies beyond them receives shadows all the same, since its depth counts as the farthest.
-    """
+def light_camera(light, depsgraph, points: np.ndarray) -> LightCamera:
+    """Where the light looks from: a sun along its beams, any other lamp from its middle to points (n, 3)."""
     matrix = np.array(light.evaluated_get(depsgraph).matrix_world)
     if light.data.type == "SUN":
-        camera = LightCamera.of_sun(matrix[:3, 2], points)
-    else:
-        camera = LightCamera.of_lamp(matrix[:3, 3], points)
-    return camera.with_border(settings)
+        return LightCamera.of_sun(matrix[:3, 2], points)
+    return LightCamera.of_lamp(matrix[:3, 3], points)

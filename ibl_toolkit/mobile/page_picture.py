@@ -48,7 +48,7 @@ def page_picture(
     hit = np.flatnonzero(seen >= 0)
     at, upright = _where(corners[seen[hit]], normals[seen[hit]], camera.eye, rays[hit])
     throws = np.array([one.throws for one in scene.meshes])[mesh]
-    whole, kept = _light(scene, settings, corners[throws], at, upright)
+    whole, kept = _light(scene, settings, corners[throws], corners[~throws], at, upright)
     share = np.where(whole > 0, kept / np.maximum(whole, 1e-30), 1)
     shown = _looked_up(background, at - background.origin, hit) * share
     albedo = np.array([one.albedo for one in scene.meshes])[mesh[seen[hit]]]
@@ -73,10 +73,12 @@ def _where(corners, normals, eye, rays):
     return eye + share[:, 2:] * rays, upright / np.linalg.norm(upright, axis=1, keepdims=True)
 
 
-def _light(scene, settings, corners, at, normals):
-    """Irradiance (n, 3) without shadows, and with those of triangles (T, 3, 3)."""
-    points, triangles = corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
-    maps = [shadow_map(points, triangles, light.camera, settings) for light in scene.lights]
+def _light(scene, settings, casters, ground, at, normals):
+    """Irradiance (n, 3) without shadows, and with those of triangles (T, 3, 3) on themselves and others."""
+    casters, ground = (
+        (corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)) for corners in (casters, ground)
+    )
+    maps = [shadow_map(*casters, light.camera, settings, ground) for light in scene.lights]
     strengths = np.array([light.strength for light in scene.lights])
     whole = np.zeros((len(at), 3))
     for light, strength in zip(scene.lights, strengths, strict=True):

@@ -2,7 +2,7 @@
 
 import { draw } from "meshes";
 import { lightValues, program, use } from "programs";
-import { textureArray, textureFormat } from "storage";
+import { hasMoments, textureArray, textureFormat } from "storage";
 
 /* What the shaders of a kind of shadow map have in common. */
 export function defines(settings, lights) {
@@ -14,9 +14,8 @@ export function defines(settings, lights) {
   };
 }
 
-export function lookupFiles({ method }) {
-  const moments = method === "vsm" || method === "evsm";
-  return ["light", "storage", "lookup", ...(moments ? ["chebyshev"] : []), method];
+export function lookupFiles(settings) {
+  return ["light", "storage", "lookup", ...(hasMoments(settings) ? ["chebyshev"] : []), settings.method];
 }
 
 /* The values that a method's look-up needs. */
@@ -45,7 +44,7 @@ export function drawShadowMaps(gl, sources, meshes, lights, settings) {
   gl.disable(gl.BLEND);
   gl.disable(gl.DITHER);
   drawDepths(gl, sources, meshes, lights, settings, maps, clear);
-  if (lookupFiles(settings).includes("chebyshev") && settings.window > 1) {
+  if (hasMoments(settings) && settings.window > 1) {
     blur(gl, sources, lights, settings, maps, internalFormat);
   }
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -74,8 +73,14 @@ function drawDepths(gl, sources, meshes, lights, settings, maps, clear) {
   lights.forEach((_, light) => {
     drawTo(gl, maps, light);
     gl.clearBufferfv(gl.COLOR, 0, clear);
-    gl.clearBufferfv(gl.DEPTH, 0, [1]);
     use(gl, depth, { light: { "1i": light } });
+    if (hasMoments(settings)) { // what receives shadows where nothing throws one, see `shadow_map` of numpy
+      gl.clearBufferfv(gl.DEPTH, 0, [0]);
+      gl.depthFunc(gl.GREATER);
+      meshes.filter(({ extras }) => !extras.throws).forEach((mesh) => draw(gl, mesh));
+      gl.depthFunc(gl.LESS);
+    }
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
     meshes.filter(({ extras }) => extras.throws).forEach((mesh) => draw(gl, mesh));
   });
   gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, null);

@@ -2,10 +2,15 @@
 
 const STORED_BYTES = { "8+8": 1, "16+16": 2 };
 
+export function hasMoments({ method }) {
+  return method === "vsm" || method === "evsm";
+}
+
 /* {internalFormat, clear}: clear is the texel where there is nothing, at depth 1.
  * Errors: a device without textures of floats that can be drawn to. */
-export function textureFormat(gl, { method, storage }) {
-  const moments = method === "vsm" || method === "evsm";
+export function textureFormat(gl, settings) {
+  const { method, storage } = settings;
+  const moments = hasMoments(settings);
   if (storage === "float32") {
     if (!gl.getExtension("EXT_color_buffer_float")) {
       throw new Error("this device cannot draw to textures of 32-bit floats: choose 8+8 or 16+16 bits");

@@ -7,6 +7,7 @@
 Sources: "Realistic Shadows for Mobile AR", section IV; V. Pamplona, "Shadow Mapping sem Shaders", 2009.
 """
 
+from .ground import reaching
 from .light_camera import LightCamera
 from .settings import METHODS, STORAGES, ShadowSettings
 from .shadow_map import ShadowMap, remaining_light, shadow_map, visibility
@@ -18,6 +19,7 @@ __all__ = [
     "LightCamera",
     "ShadowMap",
     "ShadowSettings",
+    "reaching",
     "remaining_light",
     "settings_with",
     "shadow_map",

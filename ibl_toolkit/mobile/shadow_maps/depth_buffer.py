@@ -32,8 +32,11 @@ def depth_buffer(
     offset_factor: float,
     offset_units: float,
     step: float | None,
+    farthest: bool = False,
 ) -> np.ndarray:
     """Depths (resolution, resolution) in 0 to 1, 1 where there is nothing; row 0 is at t = 0.
+
+    In each texel it is that of the nearest triangle, or of the farthest one.
 
     points: (V, 3) [m]; triangles: (T, 3) indices. As glPolygonOffset does it, each triangle is moved away
     from the light by m · factor + r · units, m being the larger of |∂z/∂x|, |∂z/∂y| [depth per texel] and r
@@ -47,7 +50,8 @@ def depth_buffer(
            [0.75, 0.75]])
     """
     grid = _Grid(resolution, resolution)
-    depth = np.ones(resolution * resolution)
+    depth = np.full(resolution * resolution, -1.0 if farthest else 1.0)
+    kept = np.maximum if farthest else np.minimum
     corners = _clip_corners(np.asarray(points, dtype=np.float64), np.asarray(triangles), camera)
     x, y, z = (corners[..., k] / corners[..., 3] for k in (0, 1, 2))
     planes = _Planes.through((x + 1) * grid.focal, (y + 1) * grid.focal, (z + 1) / 2)
@@ -56,8 +60,8 @@ def depth_buffer(
         z = planes.at(column + 0.5, row + 0.5, which)
         inside = (z >= 0) & (z <= 1)
         moved = np.clip(z + offset[which], 0, 1)[inside]
-        np.minimum.at(depth, (row.astype(np.int64) * resolution + column)[inside], moved)
-    return depth.reshape(resolution, resolution)
+        kept.at(depth, (row.astype(np.int64) * resolution + column)[inside], moved)
+    return np.where(depth < 0, 1.0, depth).reshape(resolution, resolution)
 
 
 def _clip_corners(points, triangles, camera):

@@ -53,9 +53,9 @@ class ShadowSettings:
         _within("exponent", self.exponent, 0.1, STRONGEST)
 
     @property
-    def numbers(self) -> int:
-        """Numbers a texel: the depth, or two moments."""
-        return 2 if self.method in ("vsm", "evsm") else 1
+    def has_moments(self) -> bool:
+        """Whether texels hold moments of depths, which are blurred, and not a depth."""
+        return self.method in ("vsm", "evsm")
 
     @property
     def bytes_per_texel(self) -> int:
@@ -64,7 +64,8 @@ class ShadowSettings:
         >>> ShadowSettings("vsm", storage="16+16").bytes_per_texel
         4
         """
-        return self.numbers * {"float32": 4, "8+8": 1, "16+16": 2}[self.storage]
+        numbers = 2 if self.has_moments else 1
+        return numbers * {"float32": 4, "8+8": 1, "16+16": 2}[self.storage]
 
 
 def _one_of(name, value, right):

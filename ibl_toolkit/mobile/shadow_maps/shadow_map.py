@@ -9,6 +9,7 @@ import numpy as np
 
 from . import evsm, hard, pcf, vsm
 from .depth_buffer import depth_buffer
+from .ground import filled
 from .light_camera import LightCamera
 from .lookup import in_blocks
 from .settings import ShadowSettings
@@ -29,9 +30,15 @@ class ShadowMap:
 
 
 def shadow_map(
-    points: np.ndarray, triangles: np.ndarray, camera: LightCamera, settings: ShadowSettings
+    points: np.ndarray,
+    triangles: np.ndarray,
+    camera: LightCamera,
+    settings: ShadowSettings,
+    ground: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> ShadowMap:
     """The map of triangles (T, 3), indices of points (V, 3) [m], which all throw and receive shadows.
+
+    ground: points and triangles of what receives shadows and throws none, see `filled`.
 
     Without triangles everything is lit; warnings say so, and tell what lies outside the light's view or range
     of depths, which throws no shadow, and triangles that all lie in the light's plane, which throw none.
@@ -39,17 +46,13 @@ def shadow_map(
     """
     points, triangles = np.asarray(points, dtype=np.float64), np.asarray(triangles)
     _refuse(points, triangles)
-    depth = depth_buffer(
-        points,
-        triangles.reshape(-1, 3),
-        camera,
-        settings.resolution,
-        settings.offset_factor,
-        settings.offset_units,
-        STEPS[settings.storage],
-    )
+    triangles, step = triangles.reshape(-1, 3), STEPS[settings.storage]
+    offset = settings.offset_factor, settings.offset_units
+    depth = depth_buffer(points, triangles, camera, settings.resolution, *offset, step)
+    if ground is not None and settings.has_moments:
+        depth = filled(depth, *ground, camera, settings, step)
     texels = _OF[settings.method].texels(depth, camera, settings)
-    return ShadowMap(camera, settings, texels, tuple(warnings_of(points, triangles.reshape(-1, 3), camera)))
+    return ShadowMap(camera, settings, texels, tuple(warnings_of(points, triangles, camera)))
 
 
 def visibility(shadow_map: ShadowMap, points: np.ndarray, normals: np.ndarray | None = None) -> np.ndarray:
