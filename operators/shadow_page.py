@@ -99,7 +99,9 @@ def page_missing(scene) -> str:
         return "Add an object of the role Synthetic: it throws the shadow"
     if scene.camera is None and place is None:
         return "Add a camera: the page looks from there"
-    if place is None and not any(thing.type == "LIGHT" for thing in scene.objects):
+    if place is None and not any(
+        thing.type == "LIGHT" or thing.instance_type == "COLLECTION" for thing in scene.objects
+    ):
         return NO_LIGHT
     return ""
 

@@ -49,6 +49,16 @@ def settle_shadows(preview):
             data.use_shadow = False
 
 
+def seen_twice(preview) -> list[str]:
+    """A sentence on each light whose own shadow stays beside the preview's, for it is linked."""
+    lights = lights_of(preview) if preview.replaces_own else []
+    return [
+        f"'{light.name}': its own shadow is seen too, for the light is linked from another file"
+        for light in lights
+        if light.data.library is not None and light.data.use_shadow
+    ]
+
+
 def _give_back(preview, replaced):
     """Their shadows to lights not replaced any more, unless another scene's preview wants them off."""
     for index in reversed(range(len(preview.switched_off))):

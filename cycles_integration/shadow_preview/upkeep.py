@@ -12,7 +12,7 @@ from .group import ShownLight, aim_group, build_group, fits, images_of, refuse_w
 from .kinds import COMPOSITOR, SHADER
 from .light_view import shadow_maps_of
 from .map_image import store_map
-from .own_shadow import is_gone, lights_of, settle_shadows
+from .own_shadow import is_gone, lights_of, seen_twice, settle_shadows
 from .real_surfaces import undress
 from .receivers import take_off
 from .strength import strength_of
@@ -51,7 +51,7 @@ def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
     """Make the maps of the preview's lights anew, and what shows them as far as that has to change.
 
     more: of GROUPS, those that the preview shall have beside the ones that it has.
-    Returns what the maps cannot show, in words.
+    Returns what the maps cannot show, and what is shown amiss, in words.
     Raises ValueError, with all as it was, where there is no light, no map can be made, or nodes cannot have
     the settings.
     """
@@ -70,7 +70,8 @@ def renew(preview, depsgraph: bpy.types.Depsgraph, *more: str) -> list[str]:
                 setattr(preview, property_name, made)
     gone = [f"'{row.light.name}' is gone from the scene" for row in preview.lights if is_gone(row)]
     said = zip(lights, maps, strict=True)
-    return gone + [f"'{light.name}': {words}" for light, made in said for words in made.warnings]
+    amiss = [f"'{light.name}': {words}" for light, made in said for words in made.warnings]
+    return gone + seen_twice(preview) + amiss
 
 
 def discard(preview):

@@ -274,3 +274,9 @@ def test_a_linked_light_of_the_same_name_is_another(scene, tmp_path):
     assert shadow_preview.lights_of(preview) == [sun, linked]
     scene.collection.objects.unlink(sun)
     assert shadow_preview.lights_of(preview) == [linked]
+    preview.lights.remove(0)
+    bpy.ops.panorama.preview_shadows()
+    assert preview.problem == "'SUN': its own shadow is seen too, for the light is linked from another file"
+    preview.replaces_own = False
+    bpy.ops.panorama.renew_shadow_preview()
+    assert preview.problem == ""

@@ -76,6 +76,10 @@ def test_what_is_missing_is_said(scene, tmp_path):
         bpy.ops.panorama.export_shadow_page(filepath=str(tmp_path / "none" / "a.html"))
     bpy.data.objects.remove(bpy.data.objects["SUN"])
     assert "Add a light first" in reason()
+    rig = bpy.data.objects.new("rig", None)
+    rig.instance_type = "COLLECTION"  # may have lights
+    scene.collection.objects.link(rig)
+    assert bpy.ops.panorama.export_shadow_page.poll()
     bpy.data.objects.remove(scene.camera)
     assert "Add a camera: the page looks from there" in reason()
     for thing in list(scene.objects):
