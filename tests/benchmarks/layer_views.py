@@ -22,6 +22,7 @@ import numpy as np
 from expanded_panoramas import cycles_integration
 from expanded_panoramas.ibl_toolkit import metrics
 from expanded_panoramas.ibl_toolkit.layers.files.atlas import atlas_of
+from expanded_panoramas.ibl_toolkit.layers.making.continuous_pieces import cut_at_jumps
 from expanded_panoramas.ibl_toolkit.layers.meshes.bounded_mesh import bounded_mesh
 from expanded_panoramas.ibl_toolkit.layers.meshes.layer_mesh import quadtree_mesh, quadtree_of
 from expanded_panoramas.ibl_toolkit.layers.raster.mesh_view import mesh_view
@@ -108,7 +109,7 @@ def measured(settings, kind, width, seen):
         for view in seen:
             forget_memory()
             start = time.process_time()
-            found = render(panorama, pinhole(view, *settings.size))
+            found = render(pinhole(view, *settings.size))
             seconds = time.process_time() - start
             yield figures(settings, view, found) | {
                 "kind": kind,
@@ -124,15 +125,15 @@ def measured(settings, kind, width, seen):
 
 
 def prepared(method, panorama):
-    """A function of panorama and camera that has its meshes already, if the method has any to keep."""
-    makers = {
-        "quadtree": lambda layer: quadtree_mesh(layer, quadtree_of(layer)),
-        "mesh": lambda layer: bounded_mesh(layer, panorama.radius),
-    }
-    if method not in makers:
-        return METHODS[method]
-    meshes = [makers[method](layer) for layer in panorama.layers]
-    return lambda panorama, camera: mesh_view(panorama, camera, meshes, cut=method == "mesh")
+    """A function of a camera that has its meshes already, if the method has any to keep."""
+    if method == "quadtree":
+        meshes = [quadtree_mesh(layer, quadtree_of(layer)) for layer in panorama.layers]
+        return lambda camera: mesh_view(panorama, camera, meshes, cut=False)
+    if method == "mesh":
+        parts = cut_at_jumps(panorama)
+        meshes = [bounded_mesh(layer, parts.radius) for layer in parts.layers]
+        return lambda camera: mesh_view(parts, camera, meshes)
+    return lambda camera: METHODS[method](panorama, camera)
 
 
 def figures(settings, view, found):
