@@ -212,9 +212,9 @@ def _plain(things):
     if bpy.app.version < (5,):
         material.use_nodes = True
     for thing in things:
-        if thing.material_slots:
-            thing.material_slots[0].material = material
-        elif not thing.data.materials:  # things may share their data
+        for slot in thing.material_slots:
+            slot.material = material
+        if not thing.data.materials:  # things may share their data
             thing.data.materials.append(material)
     return material
 

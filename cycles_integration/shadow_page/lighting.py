@@ -31,8 +31,8 @@ def lighting_of(
     light_from: str,
     most: int,
 ) -> tuple[list[PageLight], np.ndarray, list[str]]:
-    """The strongest lights on what throws shadows, ``most`` at most; ambient light (2, 3) of faces that look
-    up and down; warnings.
+    """The strongest lights on what throws shadows, ``most`` at most; ambient light (2, 3) [W/m²] of faces
+    that look up and down; warnings.
 
     panorama: that of the scene's place. light_from: of LIGHT_FROM. Lights that there are too many of, and
     those that throw no shadows, brighten the ambient light. A sun that was picked from the panorama stands
@@ -92,7 +92,7 @@ def _reach(panorama, surfaces):
 
 
 def _ambient(scene, panorama, own, middle):
-    """Irradiance (2, 3) of faces that look up and down besides the scene's own lights, and warnings."""
+    """Irradiance (2, 3) [W/m²] of faces that look up and down besides the scene's lights, and warnings."""
     if panorama is None:
         colour, warnings = world_colour(scene)
         return np.tile(np.zeros(3) if colour is None else np.pi * colour, (2, 1)), warnings

@@ -27,12 +27,12 @@ class PageLight:
     throws: bool = True
 
     def irradiance(self, place: np.ndarray) -> np.ndarray:
-        """(3,) of a surface at a place (3,) [m] that faces the light."""
+        """(3,) [W/m²] of a surface at a place (3,) [m] that faces the light."""
         _, (distance,) = self.light.camera.to_light(place[None])
         return np.array(self.light.strength) / max(distance, 1e-6) ** 2
 
     def on_faces(self, place: np.ndarray) -> np.ndarray:
-        """(2, 3) irradiance at a place (3,) [m] of faces that look up and down."""
+        """(2, 3) irradiance [W/m²] at a place (3,) [m] of faces that look up and down."""
         (to_light,), _ = self.light.camera.to_light(place[None])
         return np.outer(np.maximum([to_light[2], -to_light[2]], 0), self.irradiance(place))
 

@@ -37,8 +37,8 @@ FAINT = 0.2
 @dataclass(frozen=True, eq=False)
 class DeviceLights:
     """lights: that which brings most to the floor first. shares: of the floor's light, one for each, as
-    luminance. ambient, ambient_down: (3,) irradiance of faces that look up and down, besides. warnings: a
-    sentence each."""
+    luminance. ambient, ambient_down: (3,) irradiance of faces that look up and down, besides [W/m², the
+    map's radiance × sr]. warnings: a sentence each."""
 
     lights: tuple[SceneLight, ...]
     shares: tuple[float, ...]
@@ -48,7 +48,8 @@ class DeviceLights:
 
 
 def floor_irradiance(image: np.ndarray, up=(0.0, 0.0, 1.0)) -> np.ndarray:
-    """(3,) of a floor whose normal in the panorama frame is ``up`` (3,), by a map (H, W, 3) of radiance.
+    """(3,) [W/m²] of a floor whose normal in the panorama frame is ``up`` (3,), by a map (H, W, 3) of
+    radiance [W/(m² sr)].
 
     >>> (floor_irradiance(np.ones((64, 128, 3), np.float32)) / np.pi).round(3)
     array([1., 1., 1.])

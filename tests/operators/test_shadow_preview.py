@@ -126,8 +126,13 @@ def test_objects_without_a_material_get_one_and_undo_takes_it(scene):
     assert [m.name for m in bpy.data.objects["plane"].data.materials] == ["Shadow Receiver"]
     bpy.ops.ed.undo_push()
     bpy.ops.ed.undo()
-    assert not bpy.data.objects["plane"].data.materials
+    materials = bpy.data.objects["plane"].data.materials
+    assert not materials
     assert bpy.context.scene.panorama_shadow_preview.group is None
+    for _ in range(2):
+        materials.append(None)
+    bpy.ops.panorama.preview_shadows()
+    assert [one.name for one in materials] == ["Shadow Receiver"] * 2
 
 
 def test_the_map_follows_light_objects_and_settings(scene):
@@ -370,6 +375,18 @@ def test_what_ceases_to_throw_a_shadow_is_noticed(scene, name, value):
     at_rest()
     before = texels(scene)
     setattr(bpy.data.objects["ball"], name, value)
+    bpy.context.view_layer.update()
+    shadow_watch.work_off()
+    assert not np.array_equal(texels(scene), before)
+
+
+def test_a_floor_that_renders_cease_to_show_is_noticed(scene):
+    floor = bpy.data.objects["plane"]
+    floor.panorama_role = "SUPPORT"
+    bpy.ops.panorama.preview_shadows()
+    at_rest()
+    before = texels(scene)
+    floor.hide_render = True
     bpy.context.view_layer.update()
     shadow_watch.work_off()
     assert not np.array_equal(texels(scene), before)
