@@ -15,20 +15,20 @@ from ..cycles_integration import roles
 from ..cycles_integration.shadow_preview import (
     KINDS,
     composite_nodes,
+    drawn_things,
     is_in,
     is_there,
     nodes_of,
     renew,
     settle_shadows,
-    throwing_names,
 )
 
 SHORTEST_PAUSE = 0.1
 """Between two maps [s]."""
 _marked: set[str] = set()
 """Names of scenes whose maps are out of date."""
-_throwing: dict[str, frozenset[str]] = {}
-"""Scene → what threw shadows when its map was made."""
+_drawn: dict[str, frozenset] = {}
+"""Scene → what was drawn into its maps."""
 
 
 def mark(scene: bpy.types.Scene):
@@ -54,7 +54,7 @@ def refresh(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph):
     """Make the maps anew and keep what they cannot show; where that fails, the last stay and it is said."""
     preview = scene.panorama_shadow_preview
     _marked.discard(scene.name)
-    _throwing[scene.name] = throwing_names(scene)
+    _drawn[scene.name] = drawn_things(scene)
     settle_shadows(preview)  # a light may be gone
     try:
         preview.problem = "; ".join(renew(preview, depsgraph))
@@ -108,11 +108,11 @@ def _shown():
 
 
 def _is_changed(scene, depsgraph) -> bool:
-    """Whether updates may be of the map; they do not say what began or ceased to throw shadows."""
+    """Whether updates may be of the map; they do not say what began or ceased to be in it."""
     if any(_concerns(update) for update in depsgraph.updates):
         return True
     looks = any(isinstance(one.id, bpy.types.Object) and one.is_updated_shading for one in depsgraph.updates)
-    return looks and _throwing.get(scene.name) != throwing_names(scene)
+    return looks and _drawn.get(scene.name) != drawn_things(scene)
 
 
 def _role_changed(thing):
@@ -153,7 +153,7 @@ def _on_frame(scene, depsgraph):
 @persistent
 def _on_other_file(*_):
     _marked.clear()
-    _throwing.clear()
+    _drawn.clear()
     for scene in bpy.data.scenes:
         mark(scene)
 
@@ -189,4 +189,4 @@ def unregister():
     if bpy.app.timers.is_registered(_at_rest):
         bpy.app.timers.unregister(_at_rest)
     _marked.clear()
-    _throwing.clear()
+    _drawn.clear()

@@ -10,7 +10,7 @@ What the nodes give equals `visibility` of `ibl_toolkit.mobile.shadow_maps` with
 its `remaining_light`.
 """
 
-from .casters import KINDS, casters_of, throwing_names
+from .casters import KINDS, casters_of, drawn_things
 from .composite import composite_nodes, put_on_picture, take_off_picture
 from .group import MOST_LOOK_UPS, ShownLight, aim_group, build_group, fits, images_of
 from .kinds import COMPOSITOR, SHADER
@@ -34,6 +34,7 @@ __all__ = [
     "casters_of",
     "composite_nodes",
     "discard",
+    "drawn_things",
     "fits",
     "has_surface",
     "images_of",
@@ -54,5 +55,4 @@ __all__ = [
     "strongest_first",
     "take_off",
     "take_off_picture",
-    "throwing_names",
 ]

@@ -101,11 +101,11 @@ def points_of(instance: bpy.types.DepsgraphObjectInstance, mesh: bpy.types.Mesh)
     return points
 
 
-def throwing_names(scene: bpy.types.Scene) -> frozenset[str]:
-    """Names of the scene's objects that throw shadows as far as it is theirs to say: compared with those of
-    an earlier moment, it tells a change that no update names."""
+def drawn_things(scene: bpy.types.Scene) -> frozenset[tuple[str, bool]]:
+    """Names of the scene's objects that are drawn into maps as far as it is theirs to say, and whether they
+    throw shadows: compared with those of an earlier moment, it tells a change that no update names."""
     things = (thing for thing in scene.objects if thing.type in KINDS and not thing.hide_render)
-    return frozenset(thing.name for thing in things if throws_shadow(thing))
+    return frozenset((thing.name, throws_shadow(thing)) for thing in things)
 
 
 def _hidden(view_layer):
