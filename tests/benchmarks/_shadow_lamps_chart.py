@@ -15,9 +15,9 @@ STYLES = {
     "EVSM as wide": ("evsm", ()),
     "EVSM as wide, 512": ("evsm", (4, 2)),
     "EVSM as wide, 256": ("evsm", (1, 1)),
-    "PCF as wide, no floor": ("pcf", (6, 1, 1, 1)),
-    "VSM as wide, no floor": ("vsm", (6, 1, 1, 1)),
-    "EVSM as wide, no floor": ("evsm", (6, 1, 1, 1)),
+    "PCF as wide, of new things": ("pcf", (6, 1, 1, 1)),
+    "VSM as wide, of new things": ("vsm", (6, 1, 1, 1)),
+    "EVSM as wide, of new things": ("evsm", (6, 1, 1, 1)),
 }
 
 

@@ -21,6 +21,7 @@ from shadow_scenes import Lamp, Sun
 
 from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import (
     LightCamera,
+    reaching,
     shadow_map,
     suggested_settings,
     visibility,
@@ -45,12 +46,12 @@ KINDS = {
     "EVSM as wide": ("evsm", 1024, 1, True),
     "EVSM as wide, 512": ("evsm", 512, 1, True),
     "EVSM as wide, 256": ("evsm", 256, 1, True),
-    "PCF as wide, no floor": ("pcf", 1024, 1, False),
-    "VSM as wide, no floor": ("vsm", 1024, 1, False),
-    "EVSM as wide, no floor": ("evsm", 1024, 1, False),
+    "PCF as wide, of new things": ("pcf", 1024, 1, False),
+    "VSM as wide, of new things": ("vsm", 1024, 1, False),
+    "EVSM as wide, of new things": ("evsm", 1024, 1, False),
 }
-"""Name -> method, resolution, width of the window in penumbras, and whether the floor is drawn into the map;
-the preview and the page draw only what throws shadows."""
+"""Name -> method, resolution, width of the window in penumbras, and whether the floor throws shadows
+too; in the preview and the page it only receives them, and the map is fitted to what is new."""
 
 
 @dataclass(frozen=True)
@@ -117,18 +118,22 @@ def main():
     print(text)
 
 
-def seen(light, places, normals, method, resolution, widths, with_floor):
+def seen(light, places, normals, method, resolution, widths, floor_throws):
     """Visibility of places (n, 3) by a light's shadow map."""
     points, triangles = SCENE.mesh()
-    if not with_floor:
+    floor = points[:4], triangles[:2]
+    if not floor_throws:
         points, triangles = points[4:], triangles[2:] - 4
     camera = light.camera(points)
     settings = suggested_settings(
         light.extent(camera), resolution, "16+16", widths * light.penumbra(), method
     )
-    if not with_floor:
-        camera = camera.with_border(settings)
-    return visibility(shadow_map(points, triangles, camera, settings), places, normals)
+    if floor_throws:
+        return visibility(shadow_map(points, triangles, camera, settings), places, normals)
+    camera = camera.with_border(settings)
+    if settings.has_moments:
+        camera = reaching(camera, *floor)
+    return visibility(shadow_map(points, triangles, camera, settings, floor), places, normals)
 
 
 if __name__ == "__main__":
