@@ -74,14 +74,15 @@ def creases(grid: PixelGrid, near: np.ndarray, least_deg: float = CREASE_DEG) ->
     least = np.radians(least_deg)
 
     def hollow(values, places):
-        _, a, b, c, d, _ = values
-        before, after, step = places
+        known = ~np.isnan(sum(values[1:5]))
+        a, b, c, d = (value[known] for value in values[1:5])
+        before, after, step = (np.broadcast_to(place, known.shape)[known] for place in places)
         slope_before, slope_after = (b - a) / step, (d - c) / step
         foot_before, foot_after = b - slope_before * before, c - slope_after * after
         turn = foot_before * slope_after - slope_before * foot_after  # the sine of the angle
         along = foot_before * foot_after + slope_before * slope_after  # its cosine, as much too long
-        with np.errstate(invalid="ignore"):
-            return turn * np.cos(least) > along * np.sin(least)
+        known[known] = turn * np.cos(least) > along * np.sin(least)
+        return known
 
     return _by_slots(grid, near, hollow)
 

@@ -102,7 +102,8 @@ def _with_tongues(grid, labels, count, near, jumps, radius, pixel, other):
     width = parallax(radius, near[pixel], near[other]) + _MARGIN_PX * grid.pixel
     affected = np.zeros(count, dtype=bool)
     affected[labels[pixel]] = True
-    same = labels == labels[grid.neighbours]
+    same, inside = np.zeros(jumps.shape, dtype=bool), np.flatnonzero(labels >= 0)
+    same[:, inside] = labels[grid.neighbours[:, inside]] == labels[inside]
     _, number = flood(grid, starts, starts, np.tile(width, 2), affected[labels], same & ~jumps)
     tongue = number >= len(other)
     more, found = grid.components(tongue, same & ~jumps)
