@@ -4,6 +4,7 @@
 uniform int light;
 uniform float offset_factor;
 uniform float offset_units;
+uniform float ground_reach; // texels; 0 for what throws shadows
 out vec4 texel;
 
 float resolvable(float depth)
@@ -20,6 +21,9 @@ void main()
   float depth = gl_FragCoord.z;
   float steepest = max(abs(dFdx(depth)), abs(dFdy(depth)));
   float moved = clamp(depth + steepest * offset_factor + resolvable(depth) * offset_units, 0.0, 1.0);
+  if (moved + steepest * ground_reach >= 1.0) {
+    moved = 1.0; // the slope comes to far within the filter, which would darken it
+  }
   gl_FragDepth = moved;
   texel = encode(numbers_of(light, moved));
 }

@@ -74,18 +74,29 @@ function drawDepths(gl, sources, meshes, lights, settings, maps, clear) {
     drawTo(gl, maps, light);
     gl.clearBufferfv(gl.COLOR, 0, clear);
     use(gl, depth, { light: { "1i": light } });
-    if (hasMoments(settings)) { // what receives shadows where nothing throws one, see `shadow_map` of numpy
-      gl.clearBufferfv(gl.DEPTH, 0, [0]);
-      gl.depthFunc(gl.GREATER);
-      meshes.filter(({ extras }) => !extras.throws).forEach((mesh) => draw(gl, mesh));
-      gl.depthFunc(gl.LESS);
+    if (hasMoments(settings)) {
+      drawGround(gl, depth, meshes, settings);
     }
+    use(gl, depth, { ground_reach: { "1f": 0 } });
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     meshes.filter(({ extras }) => extras.throws).forEach((mesh) => draw(gl, mesh));
   });
   gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, null);
   gl.deleteRenderbuffer(nearest);
   gl.deleteProgram(depth);
+}
+
+/* What receives shadows and throws none, where nothing will throw one, see numpy's `filled`: the farthest; none
+ * in the outermost texels. */
+function drawGround(gl, depth, meshes, { resolution, window }) {
+  use(gl, depth, { ground_reach: { "1f": window } });
+  gl.enable(gl.SCISSOR_TEST);
+  gl.scissor(1, 1, resolution - 2, resolution - 2);
+  gl.clearBufferfv(gl.DEPTH, 0, [0]);
+  gl.depthFunc(gl.GREATER);
+  meshes.filter(({ extras }) => !extras.throws).forEach((mesh) => draw(gl, mesh));
+  gl.depthFunc(gl.LESS);
+  gl.disable(gl.SCISSOR_TEST);
 }
 
 /* Along s, into a map that is kept for it, and back along t. */

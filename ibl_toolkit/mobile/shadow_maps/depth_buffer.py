@@ -32,11 +32,12 @@ def depth_buffer(
     offset_factor: float,
     offset_units: float,
     step: float | None,
-    farthest: bool = False,
+    ground_reach: int | None = None,
 ) -> np.ndarray:
     """Depths (resolution, resolution) in 0 to 1, 1 where there is nothing; row 0 is at t = 0.
 
-    In each texel it is that of the nearest triangle, or of the farthest one.
+    In each texel it is that of the nearest triangle. With ``ground_reach`` it is that of the farthest, and
+    what comes to far within so many texels counts as being there.
 
     points: (V, 3) [m]; triangles: (T, 3) indices. As glPolygonOffset does it, each triangle is moved away
     from the light by m · factor + r · units, m being the larger of |∂z/∂x|, |∂z/∂y| [depth per texel] and r
@@ -50,8 +51,9 @@ def depth_buffer(
            [0.75, 0.75]])
     """
     grid = _Grid(resolution, resolution)
-    depth = np.full(resolution * resolution, -1.0 if farthest else 1.0)
-    kept = np.maximum if farthest else np.minimum
+    is_ground = ground_reach is not None
+    depth = np.full(resolution * resolution, -1.0 if is_ground else 1.0)
+    kept = np.maximum if is_ground else np.minimum
     corners = _clip_corners(np.asarray(points, dtype=np.float64), np.asarray(triangles), camera)
     x, y, z = (corners[..., k] / corners[..., 3] for k in (0, 1, 2))
     planes = _Planes.through((x + 1) * grid.focal, (y + 1) * grid.focal, (z + 1) / 2)
@@ -59,8 +61,10 @@ def depth_buffer(
     for row, column, _, which in fragments(corners[..., [0, 1, 3]], grid):
         z = planes.at(column + 0.5, row + 0.5, which)
         inside = (z >= 0) & (z <= 1)
-        moved = np.clip(z + offset[which], 0, 1)[inside]
-        kept.at(depth, (row.astype(np.int64) * resolution + column)[inside], moved)
+        moved = np.clip(z + offset[which], 0, 1)
+        if is_ground:
+            moved[moved + planes.steepest[which] * ground_reach >= 1] = 1
+        kept.at(depth, (row.astype(np.int64) * resolution + column)[inside], moved[inside])
     return np.where(depth < 0, 1.0, depth).reshape(resolution, resolution)
 
 

@@ -31,17 +31,20 @@ def filled(
     """Depths (N, N) of what throws shadows, with those of the ground where nothing does.
 
     Of the ground, triangles (T, 3) of points (V, 3) [m], it is the farthest, which is in front of no other:
-    so none of it throws a shadow. step: of the storage, see `depth_buffer`.
+    so none throws a shadow. A slope that goes on at one depth would be darkened by the filter: so the
+    outermost texels, which filters repeat, have no ground, and what comes to far within a window counts as
+    there. step: of the storage, see `depth_buffer`.
     """
     offset = settings.offset_factor, settings.offset_units
-    ground = depth_buffer(points, triangles, camera, len(depth), *offset, step, farthest=True)
-    return np.where(depth < 1, depth, ground)
+    ground = depth_buffer(points, triangles, camera, len(depth), *offset, step, settings.window)
+    inner = np.s_[1:-1, 1:-1]
+    depth = depth.copy()
+    depth[inner] = np.where(depth[inner] < 1, depth[inner], ground[inner])
+    return depth
 
 
 def reaching(camera: LightCamera, points: np.ndarray, triangles: np.ndarray) -> LightCamera:
     """A camera whose range of depths holds the ground within its map, as far as MOST allows.
-
-    Where the ground passes beyond far, maps of moments show a faint line on it.
 
     >>> noon = LightCamera(np.array([0, 0, 4.0]), np.diag([-1.0, 1, -1]), False, 1, 1, 0, 2)
     >>> floor = np.array([[-9.0, -9, 1], [9, -9, 1], [0, 9, 1]])
@@ -49,7 +52,7 @@ def reaching(camera: LightCamera, points: np.ndarray, triangles: np.ndarray) -> 
     3.06
     """
     longest = replace(camera, far=camera.near + MOST * (camera.far - camera.near))
-    depth = depth_buffer(points, triangles, longest, _TEXELS, 0, 0, None, farthest=True)
+    depth = depth_buffer(points, triangles, longest, _TEXELS, 0, 0, None, ground_reach=0)
     farthest = float(longest.linear_depth(depth[depth < 1]).max(initial=0.0))
     reached = (longest.far - longest.near) * min(farthest * _MARGIN, 1.0)
     return replace(camera, far=max(camera.far, camera.near + reached))

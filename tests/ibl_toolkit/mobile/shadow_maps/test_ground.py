@@ -63,3 +63,14 @@ def test_depths_reach_no_farther_than_twice_their_range():
 def test_without_ground_all_is_as_it_was():
     nothing = np.empty((0, 3)), np.empty((0, 3), np.int64)
     np.testing.assert_array_equal(shadow(SUN, "evsm", nothing), shadow(SUN, "evsm", nothing, filled=False))
+
+
+@pytest.mark.parametrize("method", ["vsm", "evsm"])
+def test_sloping_ground_is_lit_up_to_the_border_of_the_map(method):
+    _, ground = parts()
+    settings = suggested_settings(3.0, 64, "16+16", 0.3, method)
+    camera = LightCamera.of_sun(SUN.direction, np.array([[-0.5, -0.5, 0], [0.5, 0.5, 0.5]]))
+    made = shadow_map(
+        np.empty((0, 3)), np.empty((0, 3), np.int64), reaching(camera, *ground), settings, ground
+    )
+    assert visibility(made, *SCENE.floor(SIDE)).min() > 0.999
