@@ -65,8 +65,7 @@ class PANORAMA_OT_lights_of_probe(OfProbePhoto, bpy.types.Operator):
         found = estimate_lights(
             probe.photo, probe.camera, probe.placed.ball, self.kind, self.count, pose=probe.pose
         )
-        of_marker = probe.pose.warnings if probe.pose else ()
-        warnings = sentences([*of_marker, *probe.placed.warnings, *found.warnings])
+        warnings = sentences([*probe.warnings, *found.warnings])
         frame_from_photo, world_from_frame = _frames(scene, probe.pose)
         suns = _suns(found.lights, frame_from_photo, self.strength)
         told = {"photo": bpy.path.basename(self.filepath), "warnings": "\n".join(warnings)}

@@ -6,10 +6,11 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ..cycles_integration.pieces import update_pieces
 from ..cycles_integration.place import create_place
 from ..ibl_toolkit.mobile.probe import natural_width, unwrap, write_unwrapped
 from .light_probe_photo import OfProbePhoto, draw_groups, sentences
-from .set_files import open_image
+from .set_files import open_image, take_calibrated
 
 LEAST_WIDTH = 16
 """Of the panorama [px]."""
@@ -64,8 +65,7 @@ class PANORAMA_OT_panorama_of_ball(OfProbePhoto, bpy.types.Operator):
         context.scene.panorama_set.image.reload()  # the same file may be open with what it held before
         if height is not None:
             _calibrate(context.scene, path, height)
-        of_marker = probe.pose.warnings if probe.pose else ()
-        self.report_all(sentences([*of_marker, *probe.placed.warnings]))
+        self.report_all(sentences(probe.warnings))
         return f"{line}, black where the ball hides the room: {1 - found.known.mean():.1%}"
 
 
@@ -86,17 +86,10 @@ def _height(probe):
 
 
 def _calibrate(scene, path, height):
-    """The marker's frame is the world's, moved below the ball; picks and shapes were of another place."""
+    """The marker's frame is the world's, moved below the ball; what was built of another place goes."""
     place = create_place(scene, str(path), _Calibration(np.eye(3), height))
-    state = scene.panorama_set
-    state.picks.clear()
-    state.shapes.clear()
-    state.image = place.image
-    for field in state.result.bl_rna.properties:
-        state.result.property_unset(field.identifier)
-    state.result.camera_height, state.result.is_solved = height, True
-    state.problem = ""
-    state.calibration_is_old, state.maps_are_old = False, True
+    update_pieces(place, [])
+    take_calibrated(scene, place, path, height)
 
 
 classes = (PANORAMA_OT_panorama_of_ball,)

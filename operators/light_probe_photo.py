@@ -44,6 +44,11 @@ class Probe:
     pose: MarkerPose | None
     placed: PlacedBall
 
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful about marker and ball."""
+        return [*(self.pose.warnings if self.pose else ()), *self.placed.warnings]
+
 
 class OfProbePhoto(Reporting, ImportHelper):
     """An operator on the photograph of a probe ball.
@@ -166,10 +171,10 @@ class OfProbePhoto(Reporting, ImportHelper):
             return PhotoCamera.from_fov(math.degrees(self.fov), width, height)
         if self.lens == "FOCAL":
             return PhotoCamera.from_35mm(self.focal, width, height)
-        return _camera_of_scene(scene, width, height)
+        return camera_of_scene(scene, width, height)
 
 
-def _camera_of_scene(scene, width, height) -> PhotoCamera:
+def camera_of_scene(scene, width, height) -> PhotoCamera:
     """The scene's camera with a picture of so many pixels.
 
     Raises ValueError where there is none of perspective.

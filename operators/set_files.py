@@ -155,21 +155,26 @@ def open_image(context, path) -> str:
 
 def open_rgbd(context, path) -> str:
     """Make the place of an RGB-D file; picks and shapes of the scene go, since the file needs none."""
-    scene, state = context.scene, context.scene.panorama_set
-    loaded = load_rgbd(scene, path)
-    state.picks.clear()
-    state.shapes.clear()
-    state.image, state.image_path = loaded.place.image, str(path)
-    for field in state.result.bl_rna.properties:  # nothing of an earlier calibration is true any more
-        state.result.property_unset(field.identifier)
-    state.result.camera_height, state.result.is_solved = loaded.camera_height, True
-    up = loaded.place.origin.matrix_world.col[2]
-    state.result.tilt_deg = math.degrees(math.acos(max(-1, min(up.z, 1))))
-    state.problem = ""
-    state.calibration_is_old, state.maps_are_old = False, True
+    loaded = load_rgbd(context.scene, path)
+    take_calibrated(context.scene, loaded.place, path, loaded.camera_height)
     show_in_image_editors(context, loaded.place.image)
     faces, error = len(loaded.surface.mesh.faces), 100 * loaded.surface.median_error
     return f"{faces} faces, half of them within {error:.2g} % of the depth"
+
+
+def take_calibrated(scene, place, path, camera_height):
+    """Take a place that came calibrated: picks and shapes go, and what was told of an earlier calibration."""
+    state = scene.panorama_set
+    state.picks.clear()
+    state.shapes.clear()
+    state.image, state.image_path = place.image, str(path)
+    for field in state.result.bl_rna.properties:
+        state.result.property_unset(field.identifier)
+    state.result.camera_height, state.result.is_solved = camera_height, True
+    up = place.origin.matrix_world.col[2]
+    state.result.tilt_deg = math.degrees(math.acos(max(-1, min(up.z, 1))))
+    state.problem = ""
+    state.calibration_is_old, state.maps_are_old = False, True
 
 
 def open_set(context, panorama_set) -> str:

@@ -103,12 +103,46 @@ def test_without_a_marker_the_scenes_camera_took_it(fresh_blend, alone):
     ((direction, sun),) = suns(bpy)
     assert angle_deg(direction, np.array(camera.matrix_world)[:3, :3] @ wanted) < 1.5
     np.testing.assert_allclose(sun.parent.matrix_world.translation, (3, 1, 2), atol=1e-5)
+    np.testing.assert_allclose(sun.matrix_world.to_scale(), (1, 1, 1), atol=1e-5)
     camera.data.type = "ORTHO"
     with pytest.raises(RuntimeError, match="none of perspective"):
         lights_of(bpy, alone / "ball.exr", lens="CAMERA")
 
 
-def test_what_is_doubtful_is_kept_for_the_panel(fresh_blend, alone):
+def test_the_scenes_camera_sees_as_blender_says(fresh_blend):
+    from bpy_extras.object_utils import world_to_camera_view
+    from mathutils import Vector
+
+    from expanded_panoramas.operators.light_probe_photo import BLENDER_FROM_PHOTO, camera_of_scene
+
+    scene = fresh_blend.context.scene
+    camera = add_camera(fresh_blend)
+    data = camera.data
+    data.lens, data.sensor_width, data.sensor_height, data.shift_x, data.shift_y = 35, 30, 18, 0.1, -0.2
+    fresh_blend.context.view_layer.update()
+    there = Vector((0.3, -0.2, -2))
+    for width, height in ((320, 240), (240, 320)):
+        scene.render.resolution_x, scene.render.resolution_y = width, height
+        for data.sensor_fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
+            u, v, _ = world_to_camera_view(scene, camera, camera.location + there)
+            found = camera_of_scene(scene, width, height).pixels(
+                np.array(BLENDER_FROM_PHOTO.transposed() @ there)
+            )
+            np.testing.assert_allclose(found, (u * width, (1 - v) * height), atol=1e-3)
+
+
+def test_a_matte_ball_gives_suns_as_wide_as_the_sun(fresh_blend, tmp_path):
+    bpy = fresh_blend
+    camera, turned = PhotoCamera.from_fov(FOV_DEG, 120, 90), unit([0.4, -0.5, -0.7])
+    photo = written(tmp_path, photograph(camera, ball_of_pixels(camera, 60), [Lamp(turned)], kind="diffuse"))
+    add_camera(bpy)
+    assert lights_of(bpy, photo / "ball.exr", kind="diffuse", count=1) == {"FINISHED"}
+    ((direction, sun),) = suns(bpy)
+    assert angle_deg(direction, turned * (1, -1, -1)) < 1.5
+    assert math.degrees(sun.data.angle) == pytest.approx(0.53, abs=0.01)
+
+
+def test_what_is_doubtful_is_kept_for_the_panel(fresh_blend, alone, capfd):
     from expanded_panoramas.operators.light_probe import told_by_photo
 
     bpy = fresh_blend
@@ -120,9 +154,9 @@ def test_what_is_doubtful_is_kept_for_the_panel(fresh_blend, alone):
     ((name, altitude_deg, strength),) = told.lights
     assert (told.photo, name, strength) == ("ball.png", "Probe Light 1", 1)
     assert altitude_deg == pytest.approx(math.degrees(math.asin(unit([-0.4, 0.5, 0.7])[1])), abs=1.5)
-    assert told.warnings == [
-        "Light 1: clipped; colour and strength are lower limits, and the order is by size"
-    ]
+    doubt = "Light 1: clipped; colour and strength are lower limits, and the order is by size"
+    assert told.warnings == [doubt]
+    assert f"Warning: {doubt}" in capfd.readouterr().out
 
 
 def test_refusals_leave_the_scene_as_it_was(fresh_blend, alone, tmp_path):
@@ -160,3 +194,22 @@ def test_a_mirror_ball_becomes_the_panorama(fresh_blend, on_desk, alone):
     level = np.cos(altitude)
     found = level * np.cos(azimuth), level * np.sin(azimuth), np.sin(altitude)
     assert angle_deg(found, UP["strong"]) < 6
+
+
+def test_a_calibrated_ball_takes_the_place_of_what_was_built_before(fresh_blend, on_desk):
+    bpy = fresh_blend
+    how = {"filepath": str(on_desk / "ball.exr"), "lens": "FOV", "fov": math.radians(FOV_DEG), "width": 64}
+    bpy.ops.panorama.panorama_of_ball(**how, **by_marker())
+    scene = bpy.context.scene
+    wall = bpy.data.objects.new("wall", bpy.data.meshes.new("wall"))
+    wall["panorama_piece"] = "wall"
+    scene.panorama_place.surfaces.objects.link(wall)
+    scene.panorama_set.picks.add()
+    scene.panorama_set.shapes.add()
+    with pytest.raises(RuntimeError, match="m below the marker: check diameter"):
+        bpy.ops.panorama.panorama_of_ball(**how, **by_marker(ball_above=-0.2))
+    assert "wall" in bpy.data.objects
+    bpy.ops.panorama.panorama_of_ball(**how, **by_marker())
+    assert "wall" not in bpy.data.objects
+    assert not scene.panorama_set.picks
+    assert not scene.panorama_set.shapes
