@@ -198,8 +198,8 @@ def test_a_mirror_ball_becomes_the_panorama(fresh_blend, on_desk, alone):
 
 def test_a_calibrated_ball_takes_the_place_of_what_was_built_before(fresh_blend, on_desk):
     bpy = fresh_blend
-    how = {"filepath": str(on_desk / "ball.exr"), "lens": "FOV", "fov": math.radians(FOV_DEG), "width": 64}
-    bpy.ops.panorama.panorama_of_ball(**how, **by_marker())
+    how = {"filepath": str(on_desk / "ball.exr"), "lens": "FOV", "fov": math.radians(FOV_DEG)}
+    bpy.ops.panorama.panorama_of_ball(width=64, **how, **by_marker())
     scene = bpy.context.scene
     wall = bpy.data.objects.new("wall", bpy.data.meshes.new("wall"))
     wall["panorama_piece"] = "wall"
@@ -210,6 +210,7 @@ def test_a_calibrated_ball_takes_the_place_of_what_was_built_before(fresh_blend,
         bpy.ops.panorama.panorama_of_ball(**how, **by_marker(ball_above=-0.2))
     assert "wall" in bpy.data.objects
     bpy.ops.panorama.panorama_of_ball(**how, **by_marker())
+    assert scene.panorama_place.image.size[0] > 64  # as fine as the photograph
     assert "wall" not in bpy.data.objects
     assert not scene.panorama_set.picks
     assert not scene.panorama_set.shapes
