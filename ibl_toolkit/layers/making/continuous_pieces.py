@@ -52,8 +52,10 @@ def with_hidden_rim(piece: Layer, layer: Layer, radius: float) -> Layer:
     near = grid.flat(np.where(piece.mask, nearness(piece.depth), np.float32(np.nan))).copy()
     for _ in range(RIM_PX):
         inside = ~np.isnan(near)
-        beyond = np.flatnonzero(~inside & inside[grid.neighbours].any(axis=0) & ~np.isnan(seen))
-        beside = near[grid.neighbours[:, beyond]]
+        touched = np.zeros(grid.size, dtype=bool)
+        touched[grid.beside(np.flatnonzero(inside))] = True
+        beyond = np.flatnonzero(~inside & touched & ~np.isnan(seen))
+        beside = near[grid.beside(beyond)]
         farther = beside < seen[beyond]
         number = farther.sum(axis=0)
         means = np.where(farther, beside, 0).sum(axis=0) / np.maximum(number, 1)
@@ -72,10 +74,9 @@ def continuous_pieces(layer: Layer, radius: float, tolerance_px: float = TOLERAN
     """Layers that share out a layer's domain, with all its attributes; itself, where its depth doesn't jump.
 
     In none of them does the depth jump by a parallax of ``tolerance_px`` from within ``radius`` [m], see
-    `cuts`. What a jump parts ends
-    along hollow creases where it goes on without one, as where a box stands on the floor (see `regions`).
-    Regions go, the largest first, to the first piece in which they make no jump, so there are few. The first
-    one has the layer's name, the others "…, part 2" and so on.
+    `cuts`. What a jump parts ends along hollow creases where it goes on without one, as where a box stands on
+    the floor (see `regions`). Regions go, the largest first, to the first piece in which they make no jump,
+    so there are few. The first one has the layer's name, the others "…, part 2" and so on.
 
     >>> depth = np.full((32, 64), 3.0, np.float32)
     >>> depth[8:24, 8:20] = depth[8:24, 40:52] = 1.0

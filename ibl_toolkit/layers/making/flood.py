@@ -19,11 +19,11 @@ def flood(grid: PixelGrid, pixels, starts, reach, allowed, joined=None):
     """
     left = np.full(grid.size, -np.inf, dtype=np.float32)
     number = np.full(grid.size, -1, dtype=np.int32)
-    origin = grid.directions[starts]
+    origin = grid.directions_of(starts)
     inside = allowed[pixels]
     front = _offer(grid, origin, reach, left, number, pixels[inside], np.flatnonzero(inside))
     while len(front):
-        slots = grid.neighbours[:, front]
+        slots = grid.beside(front)
         may = allowed[slots]
         if joined is not None:
             may &= joined[:, front]
@@ -34,7 +34,7 @@ def flood(grid: PixelGrid, pixels, starts, reach, allowed, joined=None):
 
 def _offer(grid, origin, reach, left, number, pixels, numbers):
     """Give starts to pixels that they leave more than those had; the pixels that took one."""
-    chord = np.linalg.norm(grid.directions[pixels] - origin[numbers], axis=1)
+    chord = np.linalg.norm(grid.directions_of(pixels) - origin[numbers], axis=1)
     rest = reach[numbers] - 2 * np.arcsin(np.minimum(chord / 2, 1))
     better = (rest >= 0) & (rest > left[pixels] + _GAIN)
     pixels, numbers, rest = pixels[better], numbers[better], rest[better]

@@ -15,6 +15,7 @@ from ... import cube_map, equirectangular
 from ..panorama import CUBE_MAP, EQUIRECTANGULAR, refuse_other_layout
 
 RIGHT, LEFT, DOWN, UP = range(4)
+_FEW = 1 / 16  # of a map's pixels: for no more, nothing is made of the whole map
 _RIMS = ((UP, 0), (DOWN, 1), (LEFT, 2), (RIGHT, 3))  # slots, and their place in cube_map.border_texels
 
 
@@ -95,14 +96,50 @@ class PixelGrid:
             slots[DOWN][rim(DOWN)] = np.roll(numbers[:, -1], half, axis=1)
         return slots.reshape(4, self.size)
 
+    def beside(self, pixels: np.ndarray) -> np.ndarray:
+        """The `neighbours` (4, n) of pixels (n,); of a few, without those of the whole map."""
+        return np.stack([self.beside_in(slot, pixels) for slot in range(4)])
+
+    def beside_in(self, slot: int, pixels: np.ndarray) -> np.ndarray:
+        """The neighbours (n,) in one slot of pixels (n,); of a few, without those of the whole map."""
+        if "neighbours" in self.__dict__ or not self._are_few(pixels):
+            return self.neighbours[slot, pixels]
+        row = pixels // self.width
+        column = pixels - row * self.width
+        if slot in (RIGHT, LEFT):
+            return pixels - column + (column + (1 if slot == RIGHT else -1)) % self.width
+        over_pole = row * self.width + (column + self.width // 2) % self.width
+        if slot == DOWN:
+            return np.where(row == self.height - 1, over_pole, pixels + self.width)
+        return np.where(row == 0, over_pole, pixels - self.width)
+
+    def directions_of(self, pixels: np.ndarray) -> np.ndarray:
+        """The `directions` (n, 3) of pixels (n,); of a few, without those of the whole map."""
+        if "directions" in self.__dict__ or not self._are_few(pixels):
+            return self.directions[pixels]
+        row, column = np.divmod(pixels, self.width)
+        uv = equirectangular.uv_from_pixel(np.stack([column, row], axis=-1), self.width, self.height)
+        return equirectangular.direction_from_uv(uv).astype(np.float32)
+
+    def _are_few(self, pixels):
+        return not self.is_cube and len(pixels) <= self.size * _FEW
+
     def rim_pixels(self, slot: int) -> np.ndarray:
         """Numbers (n,) of the pixels whose neighbour in `slot` is beyond their sheet's rim."""
         return self._rim_pixels[slot]
 
     @cached_property
     def _rim_pixels(self):
-        numbers = np.arange(self.size).reshape(self.sheet_shape)
-        return [numbers[rim(slot)].reshape(-1) for slot in range(4)]
+        sheets, rows, columns = self.sheet_shape
+        first = np.arange(sheets)[:, None] * (rows * columns)
+        down, across = np.arange(rows) * columns, np.arange(columns)
+        found = {
+            RIGHT: first + down + (columns - 1),
+            LEFT: first + down,
+            DOWN: first + (rows - 1) * columns + across,
+            UP: first + across,
+        }
+        return [found[slot].reshape(-1) for slot in range(4)]
 
     def slots_back(self, slot: int) -> np.ndarray:
         """The slots (n,) by which the neighbours of `rim_pixels` have those pixels for neighbours."""
@@ -111,8 +148,9 @@ class PixelGrid:
 
     def pairs(self, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pixels and their neighbours, each (n,), of slots chosen (4, size): a pair from both sides."""
-        slot, pixel = np.divmod(np.flatnonzero(chosen), self.size)  # in one dimension it is faster
-        return pixel, self.neighbours[slot, pixel]
+        pixels = [np.flatnonzero(chosen[slot]) for slot in range(4)]
+        others = [self.beside_in(slot, pixels[slot]) for slot in range(4)]
+        return np.concatenate(pixels), np.concatenate(others)
 
     def components(self, inside: np.ndarray, joined: np.ndarray) -> tuple[int, np.ndarray]:
         """How many connected parts `inside` (size,) has, and the part (size,) of every pixel, -1 outside.
@@ -135,7 +173,7 @@ class PixelGrid:
         pixels, others = [], []
         for slot in range(4):
             pixel = self.rim_pixels(slot)
-            other = self.neighbours[slot, pixel]
+            other = self.beside_in(slot, pixel)
             met = joined[slot, pixel] & inside[pixel] & inside[other]
             pixels.append(pixel[met])
             others.append(other[met])
@@ -202,5 +240,6 @@ def _merged(labels, count, pixels, others):
         parents[high] = low
     roots = np.array([root(label) for label in range(count)], dtype=np.int64)
     names, renumbered = np.unique(roots, return_inverse=True)
-    lookup = np.append(renumbered.reshape(-1), -1).astype(np.int32)
-    return len(names), lookup[labels]
+    inside = labels >= 0
+    labels[inside] = renumbered.reshape(-1)[labels[inside]]
+    return len(names), labels

@@ -36,9 +36,9 @@ def regions(grid: PixelGrid, near, jumps, hollows, radius: float) -> tuple[int, 
     """How many regions there are, and that of every pixel (size,), int32; no jump is inside of one.
 
     near: (size,) 1/depth, NaN outside of the domain, where the region is -1. jumps, hollows: (4, size), of
-    `cuts` and `creases`. Curves of both sorts that end
-    less than 4 px from another are joined. Where a curve of jumps ends in the midst of a surface, the near
-    side gets a region of its own, as wide as the parallax there.
+    `cuts` and `creases`. Curves of both sorts that end less than 4 px from another are joined. Where a curve
+    of jumps ends in the midst of a surface, the near side gets a region of its own, as wide as the parallax
+    there.
     """
     count, labels = _between_curves(grid, ~np.isnan(near), ~(jumps | hollows), ~jumps)
     for _ in range(_ROUNDS):
@@ -63,7 +63,7 @@ def _between_curves(grid, inside, joined, whole):
     """
     near_curve = ~joined.all(axis=0)
     for _ in range(_JOINED_PX):
-        near_curve = near_curve | near_curve[grid.neighbours].any(axis=0)
+        near_curve[grid.beside(np.flatnonzero(near_curve))] = True
     count, labels = grid.components(inside & ~near_curve, joined)
     for ways in (joined, whole):
         _grow(grid, labels, inside, ways)
@@ -77,14 +77,14 @@ def _grow(grid, labels, inside, ways):
     """Give the domain's pixels without a label (-1) one of their neighbours', so far as curves are thick."""
     left = np.flatnonzero(inside & (labels < 0))
     for _ in range(2 * _JOINED_PX + 1):
-        there = np.where(ways[:, left], labels[grid.neighbours[:, left]], -1).max(axis=0)
+        there = np.where(ways[:, left], labels[grid.beside(left)], -1).max(axis=0)
         labels[left] = there
         left = left[there < 0]
 
 
 def _give_away(grid, labels, pixels, whole):
     """Give pixels (n,) to the region of a neighbour that no jump parts them from, if another has one."""
-    there = np.where(whole[:, pixels], labels[grid.neighbours[:, pixels]], -1)
+    there = np.where(whole[:, pixels], labels[grid.beside(pixels)], -1)
     there = np.where(there == labels[pixels], -1, there).max(axis=0)
     labels[pixels] = np.where(there >= 0, there, labels[pixels])
 
@@ -102,9 +102,12 @@ def _with_tongues(grid, labels, count, near, jumps, radius, pixel, other):
     width = parallax(radius, near[pixel], near[other]) + _MARGIN_PX * grid.pixel
     affected = np.zeros(count, dtype=bool)
     affected[labels[pixel]] = True
-    same, inside = np.zeros(jumps.shape, dtype=bool), np.flatnonzero(labels >= 0)
-    same[:, inside] = labels[grid.neighbours[:, inside]] == labels[inside]
-    _, number = flood(grid, starts, starts, np.tile(width, 2), affected[labels], same & ~jumps)
+    inside = np.flatnonzero(labels >= 0)
+    allowed, joined = np.zeros(grid.size, dtype=bool), np.zeros(jumps.shape, dtype=bool)
+    allowed[inside] = affected[labels[inside]]
+    joined[:, inside] = (labels[grid.beside(inside)] == labels[inside]) & ~jumps[:, inside]
+    _, number = flood(grid, starts, starts, np.tile(width, 2), allowed, joined)
     tongue = number >= len(other)
-    more, found = grid.components(tongue, same & ~jumps)
-    return count + more, np.where(tongue, found + count, labels)
+    more, found = grid.components(tongue, joined)
+    labels[tongue] = found[tongue] + count
+    return count + more, labels
