@@ -184,7 +184,6 @@ def camera_of_scene(scene, width, height) -> PhotoCamera:
         raise ValueError("the scene's camera: there is none of perspective, so give the focal length instead")
     fit = data.sensor_fit
     if fit == "AUTO":
-        fit = "HORIZONTAL" if width >= height else "VERTICAL"
         film, side = data.sensor_width, max(width, height)
     else:
         film, side = (data.sensor_width, width) if fit == "HORIZONTAL" else (data.sensor_height, height)

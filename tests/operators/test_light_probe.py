@@ -201,6 +201,7 @@ def test_a_calibrated_ball_takes_the_place_of_what_was_built_before(fresh_blend,
     how = {"filepath": str(on_desk / "ball.exr"), "lens": "FOV", "fov": math.radians(FOV_DEG)}
     bpy.ops.panorama.panorama_of_ball(width=64, **how, **by_marker())
     scene = bpy.context.scene
+    assert tuple(scene.panorama_place.image.size) == (64, 32)
     wall = bpy.data.objects.new("wall", bpy.data.meshes.new("wall"))
     wall["panorama_piece"] = "wall"
     scene.panorama_place.surfaces.objects.link(wall)
