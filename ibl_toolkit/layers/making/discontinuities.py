@@ -24,6 +24,7 @@ _STEEPER = 4.0  # a jump is so many times what the surfaces beside it do from pi
 _AT_RIM = 0.1
 _SMOOTHINGS = 4
 _PAD = 3
+_ROWS = 64  # looked at together
 _UPRIGHT = ((UP, (2, 1, 0)), (DOWN, (-3, -2, -1)))
 
 
@@ -76,7 +77,7 @@ def creases(grid: PixelGrid, near: np.ndarray, least_deg: float = CREASE_DEG) ->
     def hollow(values, places):
         known = ~np.isnan(sum(values[1:5]))
         a, b, c, d = (value[known] for value in values[1:5])
-        before, after, step = (np.broadcast_to(place, known.shape)[known] for place in places)
+        before, after, step = (place[known] for place in places)
         slope_before, slope_after = (b - a) / step, (d - c) / step
         foot_before, foot_after = b - slope_before * before, c - slope_after * after
         turn = foot_before * slope_after - slope_before * foot_after  # the sine of the angle
@@ -122,7 +123,8 @@ def _by_slots(grid, near, rule):
 def _between(grid, near, sheets, axis, rule):
     """What `rule` says of the n + 1 pairs along an axis, (sheets, rows, columns + 1) or (…, rows + 1, …).
 
-    It is given six values, of which the pair's are in the middle, and the pairs' places.
+    It is given six values, of which the pair's are in the middle, and the pairs' places; in blocks of rows,
+    which takes half the time of all at once.
     """
     padded = _padded(grid, near, sheets, axis)
     count = sheets.shape[axis]
@@ -130,7 +132,13 @@ def _between(grid, near, sheets, axis, rule):
     def shifted(k):
         return padded[(slice(None),) * axis + (slice(_PAD - 1 + k, _PAD + count + k),)]
 
-    return rule([shifted(k) for k in (-2, -1, 0, 1, 2, 3)], _places(grid, axis))
+    values = [shifted(k) for k in (-2, -1, 0, 1, 2, 3)]
+    places = [np.broadcast_to(place, values[0].shape) for place in _places(grid, axis)]
+    found = np.empty(values[0].shape, dtype=bool)
+    for start in range(0, found.shape[1], _ROWS):
+        rows = np.s_[:, start : start + _ROWS]
+        found[rows] = rule([value[rows] for value in values], [place[rows] for place in places])
+    return found
 
 
 def _are_jumps(values, scale):
