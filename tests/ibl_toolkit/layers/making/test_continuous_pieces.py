@@ -135,6 +135,7 @@ def test_an_exported_mesh_that_goes_beyond_its_piece_is_masked_by_it():
     wall, balls = (piece.texture.pixels[..., 3] > 0 for piece in pieces)
     np.testing.assert_array_equal(balls, mesh_pieces(room, RADIUS)[1].mask)
     assert (wall | balls).all()
+    assert (wall & balls).any()
     inner = cv2.erode(balls.astype(np.uint8), np.ones((5, 5))) > 0
     assert not (wall & inner).any()  # it goes on for two pixels behind them
     dark = (pieces[1].texture.pixels[..., :3] == 0).all(axis=2)
