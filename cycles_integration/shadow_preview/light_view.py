@@ -23,14 +23,14 @@ def shadow_maps_of(
     points, triangles = casters_of(depsgraph)
     if not len(triangles):
         raise ValueError(NOTHING_THROWS)
-    ground = ground_of(depsgraph)
+    ground = ground_of(depsgraph) if settings.has_moments else None
     maps = []
     for light in lights:
         try:
             camera = light_camera(light, depsgraph, points).with_border(settings)
         except ValueError as error:
             raise ValueError(f"'{light.name}': {error}") from error
-        if settings.has_moments:
+        if ground is not None:
             camera = reaching(camera, *ground)
         maps.append(shadow_map(points, triangles, camera, settings, ground))
     return maps

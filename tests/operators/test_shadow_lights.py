@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import shadow_pictures
 from mathutils import Vector
+from shadow_previews import select
 
 from expanded_panoramas.cycles_integration import shadow_preview
 from expanded_panoramas.cycles_integration.node_trees import add
@@ -35,12 +36,6 @@ def light(kind, energy, colour=(1, 1, 1), location=shadow_pictures.LAMP):
     made.data.energy, made.data.color, made.location = energy, colour, location
     bpy.context.view_layer.update()
     return made
-
-
-def select(*names):
-    bpy.ops.object.select_all(action="DESELECT")
-    for name in names:
-        bpy.data.objects[name].select_set(True)
 
 
 def names(scene):
