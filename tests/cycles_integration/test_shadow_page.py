@@ -1,5 +1,7 @@
 """A Blender scene as the phone's page has it: meshes, colours, lights as strong as in Cycles, camera."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -70,6 +72,13 @@ def test_roles_colours_and_normals(scene):
     assert found.scene.ambient == pytest.approx(np.pi * np.array((0.1, 0.2, 0.3)))
     assert found.warnings == ()
     np.testing.assert_allclose(found.background.image[0, 0], (0.1, 0.2, 0.3))
+
+
+def test_cameras_of_maps_of_moments_reach_to_the_floor(scene):
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    hard, soft = (page_scene(scene, depsgraph, [replace(KIND, method=name)]) for name in ("hard", "vsm"))
+    near, far = (found.scene.lights[0].camera.far for found in (hard, soft))
+    assert far > 1.2 * near
 
 
 def test_instances_modifiers_mirrors_and_what_is_hidden(scene):

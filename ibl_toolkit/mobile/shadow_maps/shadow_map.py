@@ -50,6 +50,7 @@ def shadow_map(
     offset = settings.offset_factor, settings.offset_units
     depth = depth_buffer(points, triangles, camera, settings.resolution, *offset, step)
     if ground is not None and settings.has_moments:
+        _refuse(*ground)
         depth = filled(depth, *ground, camera, settings, step)
     texels = _OF[settings.method].texels(depth, camera, settings)
     return ShadowMap(camera, settings, texels, tuple(warnings_of(points, triangles, camera)))

@@ -8,7 +8,7 @@ import pytest
 import web_pages
 from web_pages import CHROMIUM, measured, photo, sky, still_life, white
 
-from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import suggested_settings
+from expanded_panoramas.ibl_toolkit.mobile.shadow_maps import LightCamera, reaching, suggested_settings
 from expanded_panoramas.ibl_toolkit.mobile.web_page import SOURCES, write_page
 
 pytestmark = pytest.mark.skipif(
@@ -21,30 +21,44 @@ BEYOND = 0.003
 """The part of what is not at an outline that may differ by more than 2/255: texels at a shadow's edge."""
 
 
+FINE, COARSE = (512, 0.04), (64, 0.9)
+"""Texels a side, and the penumbra [m]; coarse is where a line in which the floor comes to far would show."""
 CASES = {
-    "hard, float32, sun, visibility": ("hard", "float32", ("sun",), white),
-    "PCF, 8+8, lamp, photo": ("pcf", "8+8", ("lamp",), lambda: photo(web_pages.camera())),
-    "VSM, 16+16, sun, visibility": ("vsm", "16+16", ("sun",), white),
-    "EVSM, 8+8, lamp, visibility": ("evsm", "8+8", ("lamp",), white),
-    "EVSM, 16+16, both, panorama": ("evsm", "16+16", ("sun", "lamp"), sky),
+    "hard, float32, sun, visibility": ("hard", "float32", FINE, ("sun",), white),
+    "PCF, 8+8, lamp, photo": ("pcf", "8+8", FINE, ("lamp",), lambda: photo(web_pages.camera())),
+    "VSM, 16+16, sun, visibility": ("vsm", "16+16", FINE, ("sun",), white),
+    "EVSM, 8+8, lamp, visibility": ("evsm", "8+8", FINE, ("lamp",), white),
+    "EVSM, 16+16, both, panorama": ("evsm", "16+16", COARSE, ("sun", "lamp"), sky),
 }
 
 
 @pytest.fixture(scope="module")
 def shown(tmp_path_factory):
     cases = []
-    for method, storage, lights, background in CASES.values():
+    for method, storage, (texels, penumbra), lights, background in CASES.values():
         alone = background is white
-        scene = still_life(lights, ("support",) * 3, 0.0) if alone else as_exported(still_life(lights))
-        cases.append((scene, suggested_settings(4.0, 512, storage, 0.04, method), background()))
+        settings = suggested_settings(4.0, texels, storage, penumbra, method)
+        scene = still_life(lights, ("support",) * 3, 0.0) if alone else as_exported(lights, settings)
+        cases.append((scene, settings, background()))
     return dict(zip(CASES, measured(cases, tmp_path_factory.mktemp("pages")), strict=True))
 
 
-def as_exported(scene):
-    """Floor and box stand for real things, whose shadows are in the photograph."""
-    floor, box, ball = scene.meshes
-    real = (replace(mesh, role="support", throws=False) for mesh in (floor, box))
-    return replace(scene, meshes=(*real, ball))
+def as_exported(lights, settings):
+    """Floor and box stand for real things, whose shadows are in the photograph; the maps are fitted to the
+    ball, and the floor comes to far in them."""
+    scene = still_life(lights)
+    floor, box, ball = (replace(mesh, throws=mesh.name == "ball") for mesh in scene.meshes)
+    real = [replace(mesh, role="support") for mesh in (floor, box)]
+    cameras = {
+        "sun": LightCamera.of_sun(web_pages.SUN, ball.points),
+        "lamp": LightCamera.of_lamp(web_pages.LAMP, ball.points),
+    }
+    fitted = [reaching(cameras[name].with_border(settings), floor.points, floor.triangles) for name in lights]
+    return replace(
+        scene,
+        meshes=(*real, ball),
+        lights=[replace(one, camera=camera) for one, camera in zip(scene.lights, fitted, strict=True)],
+    )
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -65,11 +65,20 @@ def test_without_ground_all_is_as_it_was():
     np.testing.assert_array_equal(shadow(SUN, "evsm", nothing), shadow(SUN, "evsm", nothing, filled=False))
 
 
+def test_ground_that_is_not_finite_or_has_no_such_points_is_refused():
+    casters, (points, triangles) = parts()
+    camera, settings = LightCamera.of_sun(SUN.direction, casters[0]), suggested_settings(3.0, 64)
+    for ground, reason in (((points * np.nan, triangles), "finite"), ((points[:3], triangles), "only 3")):
+        with pytest.raises(ValueError, match=reason):
+            shadow_map(*casters, camera, settings, ground)
+
+
+@pytest.mark.parametrize("lowest", [0.0, -1.5], ids=["too far", "beyond the border"])
 @pytest.mark.parametrize("method", ["vsm", "evsm"])
-def test_sloping_ground_is_lit_up_to_the_border_of_the_map(method):
+def test_sloping_ground_is_lit_where_it_ends_in_the_map(method, lowest):
     _, ground = parts()
     settings = suggested_settings(3.0, 64, "16+16", 0.3, method)
-    camera = LightCamera.of_sun(SUN.direction, np.array([[-0.5, -0.5, 0], [0.5, 0.5, 0.5]]))
+    camera = LightCamera.of_sun(SUN.direction, np.array([[-0.5, -0.5, lowest], [0.5, 0.5, 0.5]]))
     made = shadow_map(
         np.empty((0, 3)), np.empty((0, 3), np.int64), reaching(camera, *ground), settings, ground
     )
