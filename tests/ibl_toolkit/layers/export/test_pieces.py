@@ -132,6 +132,8 @@ def test_parallax_sets_the_far_sphere_where_the_radius_is_large():
     cube = Layer("sky", "cube map", {"depth": np.full((32, 48), 3.0, np.float32)})  # 16 pixels a right angle
     wide = LayeredPanorama((cube,), np.eye(3), np.zeros(3), 20.0)
     assert far_radius(wide) == pytest.approx(20 * 64 / (2 * np.pi))
+    both = LayeredPanorama((layered_box(width=128).layers[0], cube), np.eye(3), np.zeros(3), 20.0)
+    assert far_radius(both) == pytest.approx(20 * 128 / (2 * np.pi))  # the finest layer's pixel
     with pytest.raises(ValueError, match=r"far 3\.0 m must be finite and beyond the farthest surface, 3\."):
         pieces_of(panorama, 1.0, far=3.0)
 

@@ -119,6 +119,18 @@ def test_sky_stays_at_infinity_and_unknown_depth_is_left_to_others(tmp_path):
     assert np.isinf(made.layers[0].depth[rays[..., 1] > 0.9]).all()
 
 
+def test_layers_stand_where_it_is_asked_for(tmp_path):
+    rays = directions("equirectangular", 64)
+    grey = dict.fromkeys("RGB", np.full(rays.shape[:2], 0.5, np.float32))
+    write_exr(tmp_path / "ball.exr", {**grey, "Z": np.full(rays.shape[:2], 2, np.float32)})
+    shots = read_shots(listed(tmp_path, {"image": "ball.exr", "origin": [1, 2, 3]}))
+    made = layers_from_shots(shots, 64, 0.3, origin=(1.5, 2, 3))
+    assert made.origin.tolist() == [1.5, 2, 3]
+    (layer,) = made.layers
+    np.testing.assert_allclose(layer.depth[rays[..., 0] > 0.98], 1.5, rtol=0.02)
+    np.testing.assert_allclose(layer.depth[rays[..., 0] < -0.98], 2.5, rtol=0.02)
+
+
 @pytest.mark.parametrize(
     ("shot", "words"),
     [
