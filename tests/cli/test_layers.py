@@ -7,7 +7,9 @@ import pytest
 
 from expanded_panoramas.ibl_toolkit import equirectangular
 from expanded_panoramas.ibl_toolkit.images import RGBD, write_exr, write_rgbd
+from expanded_panoramas.ibl_toolkit.layers.files.folder import write_folder
 from expanded_panoramas.ibl_toolkit.layers.files.storage import read_layers
+from expanded_panoramas.ibl_toolkit.layers.panorama import Layer, LayeredPanorama
 
 WIDTH = 64
 WALL, CARD = 4.0, 1.5
@@ -83,6 +85,19 @@ def test_a_folder_of_layers_is_sorted_in_its_place(rgbd_file, tmp_path, panorama
     assert [layer.name for layer in read_layers(folder).layers] == ["background, from 2 m", "front 1, to 2 m"]
     assert read_layers(folder).radius == before.radius
     assert len(out.splitlines()) == 3
+
+
+def test_what_is_far_and_what_is_thin_is_told_apart(tmp_path, panorama):
+    """Each by its own option: a mountain becomes infinity, and a rough wall flat."""
+    is_wall = np.arange(WIDTH) < WIDTH // 2
+    depth = np.where(is_wall, 2 + 1e-3 * (np.arange(WIDTH) % 2), 900) * np.ones((WIDTH // 2, 1))
+    view = Layer("view", "equirectangular", {"depth": depth.astype(np.float32)})
+    write_folder(LayeredPanorama((view,), np.eye(3), np.zeros(3), 0.5), tmp_path / "view")
+    for option, names, distances in (("--infinity", ["infinity", "view"], 2), ("--flatten", ["view"], 1)):
+        status, _, _ = panorama("layers", tmp_path / "view", "-o", tmp_path / option, option)
+        layers = read_layers(tmp_path / option).layers
+        assert (status, [layer.name for layer in layers]) == (0, names)
+        assert len(np.unique(layers[-1].depth[:, is_wall])) == distances
 
 
 def test_points_become_layers(tmp_path, panorama):

@@ -47,6 +47,17 @@ def test_features_are_the_edges_of_the_room(mapping):
     assert np.array_equal(residual[~features], variation[~features])
 
 
+def test_every_row_is_compared_with_the_one_above():
+    """Of a map of more rows than are looked at together."""
+    normals = np.random.default_rng(3).normal(size=(1, 150, 300, 3)).astype(np.float32)
+    normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    inside = np.ones((1, 150, 300), bool)
+    found = normal_variation(Corners("equirectangular", 300, 150), normals, inside)
+    here, left, above = normals[:, 1:-1, 1:-1], normals[:, 1:-1, :-2], normals[:, :-2, 1:-1]
+    expected = np.hypot(*(1 - np.sum(here * other, axis=-1) for other in (left, above)))
+    np.testing.assert_allclose(found[:, 1:-1, 1:-1], expected, atol=1e-5)
+
+
 def test_a_domain_has_no_normals_from_beyond_its_rim():
     """A near half before a far wall: each has its own normals up to the rim."""
     corners = Corners("equirectangular", 64, 32)
