@@ -24,7 +24,7 @@ class _Calibration:
 
 class PANORAMA_OT_panorama_of_ball(OfProbePhoto, bpy.types.Operator):
     """Unwrap the photograph of a mirror ball into a panorama, written beside the photograph as
-    NAME_panorama.exr, and open it. With a marker it is calibrated too: picks and shapes go"""
+    NAME_panorama.exr, and open it. With a marker it is calibrated too: picks, shapes and surfaces go"""
 
     bl_idname = "panorama.panorama_of_ball"
     bl_label = "Panorama from Mirror Ball"

@@ -4,6 +4,7 @@ import json
 
 import cv2
 import numpy as np
+import OpenEXR
 import pytest
 from probe_photos import Lamp, angle_deg, codes, desk_before, photograph, unit
 
@@ -82,6 +83,9 @@ def test_the_unwrapped_ball_stands_upright_and_shows_the_light(photo, panorama, 
     assert image.shape == (32, 64, 3)
     assert result["unwrapped"]["size"] == [64, 32]
     assert 0.99 < result["unwrapped"]["known"] < 1
+    alpha = OpenEXR.File(str(out), separate_channels=True).channels()["A"].pixels
+    assert alpha.mean() == pytest.approx(result["unwrapped"]["known"])
+    assert not image[alpha == 0].any()
     row, column = np.unravel_index(np.argmax(image.sum(axis=2)), image.shape[:2])
     u, v = result["lights"][0]["uv"]
     assert abs((column + 0.5) / 64 - u) < 0.03
