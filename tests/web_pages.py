@@ -22,7 +22,7 @@ FLAGS = [
     *("--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
     *("--hide-scrollbars", "--force-device-scale-factor=1", "--force-color-profile=srgb"),
     *("--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic"),
-    *("--no-first-run", "--virtual-time-budget=20000"),
+    *("--no-first-run", "--virtual-time-budget=600000"),
 ]
 SIZE = 480, 320
 _TURN = 0.6
