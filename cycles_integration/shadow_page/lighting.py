@@ -70,7 +70,7 @@ def _of_panorama(panorama, points, meshes, most, middle):
         most,
         panorama.origin,
         panorama.world_from_panorama,
-        _reach(panorama, [mesh for mesh in meshes if mesh.role == "support"]),
+        _reach(panorama, [mesh for mesh in meshes if not mesh.is_new]),
     )
     lights = _strongest_first([PageLight("panorama", light) for light in found.lights], middle)
     lights = [replace(one, name=f"{one.name} {k}") for k, one in enumerate(lights, 1)]

@@ -9,7 +9,6 @@ import bpy
 import numpy as np
 
 from ...ibl_toolkit.mobile.shadow_scene import SceneMesh
-from .. import roles
 from ..shadow_preview.casters import numbers, points_of, shown_meshes, throws_shadow
 from .colours import base_colour
 
@@ -43,7 +42,8 @@ def meshes_of(depsgraph: bpy.types.Depsgraph) -> tuple[list[SceneMesh], list[str
     parts = {}
     for instance, mesh in shown_meshes(depsgraph, lambda thing: True):
         thing = instance.object
-        is_new = thing.original.panorama_role == roles.SYNTHETIC
+        role = thing.original.panorama_role.lower()
+        is_new = role == "synthetic"
         worn = [slot.material for slot in thing.material_slots] or [None]
         of_triangle = np.minimum(_values(mesh.loop_triangles, "material_index", np.int32), len(worn) - 1)
         corners, normals = _corners(instance, mesh)
@@ -52,7 +52,7 @@ def meshes_of(depsgraph: bpy.types.Depsgraph) -> tuple[list[SceneMesh], list[str
             key = thing.original, worn[number].original if is_new and worn[number] else None
             throws = throws_shadow(thing)
             name = f"{thing.original.name}, {key[1].name}" if key[1] else thing.original.name
-            one = parts.setdefault((key, is_new, throws, name), _Parts())
+            one = parts.setdefault((key, role, throws, name), _Parts())
             one.add(*_welded(points, corners[of_triangle == number], normals[of_triangle == number]))
     colours = {key[1]: base_colour(key[1]) if key[1] else (BARE, "") for key, *_ in parts}
     return [
@@ -60,12 +60,12 @@ def meshes_of(depsgraph: bpy.types.Depsgraph) -> tuple[list[SceneMesh], list[str
             name,
             np.concatenate(one.points),
             np.concatenate(one.triangles),
-            "synthetic" if is_new else "support",
+            role,
             colours[key[1]][0],
             np.concatenate(one.normals),
             throws,
         )
-        for (key, is_new, throws, name), one in parts.items()
+        for (key, role, throws, name), one in parts.items()
     ], [warning for _, warning in colours.values() if warning]
 
 

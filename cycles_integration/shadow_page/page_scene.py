@@ -51,7 +51,7 @@ def page_scene(
     throwing = [mesh for mesh in meshes if mesh.throws]
     if not throwing:
         raise ValueError(NOTHING_THROWS)
-    if all(mesh.role == "synthetic" for mesh in meshes):
+    if all(mesh.is_new for mesh in meshes):
         warnings.append("nothing has the role Support: only new things receive the shadows")
     points, triangles = joined(throwing)
     camera = camera_of(scene, depsgraph, points, camera_name)
@@ -59,7 +59,7 @@ def page_scene(
     panorama = background if background.kind == "panorama" and place_in(scene) else None
     lights, ambient, amiss_of_lights = lighting_of(scene, depsgraph, panorama, meshes, light_from, most)
     softest = max(kinds, key=lambda kind: (kind.method != "hard") * kind.window / kind.resolution)
-    ground = joined([mesh for mesh in meshes if not mesh.throws])
+    ground = joined([mesh for mesh in meshes if mesh.is_ground])
     cameras = [one.light.camera.with_border(softest) for one in lights]
     if any(kind.has_moments for kind in kinds):
         cameras = [reaching(view, *ground) for view in cameras]

@@ -30,8 +30,11 @@ def casters_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ground_of(depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
-    """The same of all that renders show and that throws no shadow, but receives them."""
-    return _triangles(depsgraph, lambda thing: not throws_shadow(thing))
+    """The same of the role SUPPORT, which throws no shadow, but receives them.
+
+    ENVIRONMENT is left out: where a floor ends at a wall that is in the map, the filter darkens the corner.
+    """
+    return _triangles(depsgraph, lambda thing: thing.original.panorama_role == roles.SUPPORT)
 
 
 def _triangles(depsgraph, is_wanted):

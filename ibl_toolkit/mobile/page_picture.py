@@ -48,11 +48,12 @@ def page_picture(
     hit = np.flatnonzero(seen >= 0)
     at, upright = _where(corners[seen[hit]], normals[seen[hit]], camera.eye, rays[hit])
     throws = np.array([one.throws for one in scene.meshes])[mesh]
-    whole, kept = _light(scene, settings, corners[throws], corners[~throws], at, upright)
+    is_ground = np.array([one.is_ground for one in scene.meshes])[mesh]
+    whole, kept = _light(scene, settings, corners[throws], corners[is_ground], at, upright)
     share = np.where(whole > 0, kept / np.maximum(whole, 1e-30), 1)
     shown = _looked_up(background, at - background.origin, hit) * share
     albedo = np.array([one.albedo for one in scene.meshes])[mesh[seen[hit]]]
-    is_new = np.array([one.role == "synthetic" for one in scene.meshes])[mesh[seen[hit]]]
+    is_new = np.array([one.is_new for one in scene.meshes])[mesh[seen[hit]]]
     radiance = np.array(_looked_up(background, rays, np.arange(len(rays))), dtype=np.float32)
     radiance[hit] = np.where(is_new[:, None], albedo / np.pi * kept, shown)
     shape = camera.height, camera.width

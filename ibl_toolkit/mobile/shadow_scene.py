@@ -16,8 +16,9 @@ from ..glb import GlbBinary, glb_bytes
 from ..layers.views.pinhole import Pinhole
 from .shadow_maps import LightCamera, ShadowSettings
 
-ROLES = ("support", "synthetic")
-"""Real, shows the background but for what shadows take of it; new, has a colour of its own."""
+ROLES = ("support", "environment", "synthetic")
+"""Real surfaces, which show the background but for what shadows take of it: those meant to receive shadows,
+and others; and what is new, with a colour of its own."""
 MOST_LIGHTS = 8
 """A phone tests each of them in each pixel."""
 _NEAREST = 0.01  # distance from the camera [m] from which on meshes are drawn
@@ -60,6 +61,16 @@ class SceneMesh:
             raise ValueError(f"{self.name}: albedo {self.albedo} must be three numbers from 0 to 1")
         if self.normals is not None and np.shape(self.normals) != points.shape:
             raise ValueError(f"{self.name}: normals {np.shape(self.normals)} must be {points.shape}")
+
+    @property
+    def is_new(self) -> bool:
+        """Whether it has a colour of its own, and does not show the picture."""
+        return self.role == "synthetic"
+
+    @property
+    def is_ground(self) -> bool:
+        """Whether maps of moments hold it where nothing throws a shadow, see `shadow_maps.ground`."""
+        return self.role == "support" and not self.throws
 
     def with_normals(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Points (n, 3), normals (n, 3) and triangles; flat ones have their corners to themselves."""

@@ -61,6 +61,14 @@ def found_in(scene, **options):
     return page_scene(scene, bpy.context.evaluated_depsgraph_get(), [KIND], **options)
 
 
+def test_walls_that_only_show_the_photograph_are_no_ground(scene):
+    floor = bpy.data.objects["plane"]
+    assert found_in(scene).scene.meshes[0].is_ground
+    floor.panorama_role = "ENVIRONMENT"
+    mesh = found_in(scene).scene.meshes[0]
+    assert (mesh.role, mesh.is_new, mesh.throws, mesh.is_ground) == ("environment", False, False, False)
+
+
 def test_roles_colours_and_normals(scene):
     found = found_in(scene)
     floor, ball = found.scene.meshes
@@ -270,7 +278,7 @@ def test_a_places_lamp_is_where_the_room_has_it(fresh_blend, tmp_path, turn):
     small.add_ball(scene, small.material(small.DIFFUSE), 0.2, down)
     found = found_in(scene)
     assert found.light_names == ("panorama 1",)
-    assert {mesh.role for mesh in found.scene.meshes[:-1]} == {"support"}
+    assert {mesh.role for mesh in found.scene.meshes[:-1]} == {"environment"}
     lamp = found.scene.lights[0]
     where = TURNS[turn] @ (*LAMP, HIGH[2]) + origin
     np.testing.assert_allclose(lamp.camera.eye, where, atol=0.05)

@@ -80,7 +80,7 @@ export class Picture {
     });
     for (const mesh of this.meshes) {
       this.use(this.surfaces, {
-        is_support: { "1i": mesh.extras.role === "support" },
+        is_real: { "1i": mesh.extras.role !== "synthetic" },
         albedo: { "3fv": mesh.albedo },
       });
       draw(gl, mesh);

@@ -94,7 +94,7 @@ function drawGround(gl, depth, meshes, { resolution, window }) {
   gl.scissor(1, 1, resolution - 2, resolution - 2);
   gl.clearBufferfv(gl.DEPTH, 0, [0]);
   gl.depthFunc(gl.GEQUAL);
-  meshes.filter(({ extras }) => !extras.throws).forEach((mesh) => draw(gl, mesh));
+  meshes.filter(({ extras }) => extras.role === "support" && !extras.throws).forEach((mesh) => draw(gl, mesh));
   gl.depthFunc(gl.LESS);
   gl.disable(gl.SCISSOR_TEST);
 }

@@ -6,7 +6,7 @@
 
 in vec3 position;
 in vec3 upright;
-uniform bool is_support;
+uniform bool is_real;
 uniform vec3 albedo;
 uniform vec3 ambient;      /* irradiance without the lights [W/m²], looking up */
 uniform vec3 ambient_down; /* looking down */
@@ -40,7 +40,7 @@ void main()
       kept += irradiance * visibility(light);
     }
   }
-  if (is_support) {
+  if (is_real) {
     vec3 share = mix(vec3(1.0), kept / max(whole, vec3(1e-30)), greaterThan(whole, vec3(0.0)));
     colour = srgb(background(position - origin) * share);
   } else {

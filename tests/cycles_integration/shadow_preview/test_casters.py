@@ -8,6 +8,7 @@ import small_scenes
 
 from expanded_panoramas.cycles_integration.node_trees import add, new_group, output_group
 from expanded_panoramas.cycles_integration.shadow_preview import casters_of
+from expanded_panoramas.cycles_integration.shadow_preview.casters import ground_of
 
 
 @pytest.fixture
@@ -124,3 +125,10 @@ def test_parts_of_instances_that_renders_leave_out_throw_no_shadow(scene):
     assert count() == whole - 2
     outer.objects.link(box)
     assert count() == whole
+
+
+@pytest.mark.parametrize(("role", "triangles"), [("SUPPORT", 2), ("ENVIRONMENT", 0), ("SYNTHETIC", 0)])
+def test_ground_is_what_is_meant_to_receive_shadows(scene, role, triangles):
+    bpy.data.objects["plane"].panorama_role = role
+    bpy.context.view_layer.update()
+    assert len(ground_of(bpy.context.evaluated_depsgraph_get())[1]) == triangles

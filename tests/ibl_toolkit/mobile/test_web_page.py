@@ -111,7 +111,7 @@ def test_flat_normals_point_where_triangles_turn_left():
     [
         (lambda: SceneMesh("a", TRIANGLE[0][:2], TRIANGLE[1]), "corners are among 2 points"),
         (lambda: SceneMesh("a", TRIANGLE[0] * np.nan, TRIANGLE[1]), "all finite"),
-        (lambda: SceneMesh("a", *TRIANGLE, "real"), "role 'real' must be one of support, synthetic"),
+        (lambda: SceneMesh("a", *TRIANGLE, "real"), "role 'real' must be one of support, env"),
         (lambda: SceneMesh("a", *TRIANGLE, albedo=(0, 0, 2)), "numbers from 0 to 1"),
         (lambda: SceneMesh("a", *TRIANGLE, normals=np.ones((2, 3))), "normals (2, 3) must be (3, 3)"),
         (lambda: SceneLight(still_life().lights[0].camera, (1, 1, -1)), "0 or more"),
